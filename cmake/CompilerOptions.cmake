@@ -1,0 +1,18 @@
+# rimod_compiler_options(TARGET): language level, warnings and sanitizers of one target of ours.
+function(rimod_compiler_options target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  # No contraction of a*b+c: results must not depend on the processor the compiler aims at.
+  target_compile_options(
+    ${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                      -ffp-contract=off $<$<BOOL:${RIMOD_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(RIMOD_SANITIZER STREQUAL "address-undefined")
+    set(flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  elseif(RIMOD_SANITIZER STREQUAL "thread")
+    set(flags -fsanitize=thread -fno-omit-frame-pointer)
+  elseif(RIMOD_SANITIZER)
+    message(FATAL_ERROR "RIMOD_SANITIZER is '${RIMOD_SANITIZER}', not address-undefined or thread")
+  endif()
+  target_compile_options(${target} PUBLIC ${flags})
+  target_link_options(${target} PUBLIC ${flags})
+endfunction()

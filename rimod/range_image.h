@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "rimod/scan.h"
+
+namespace rimod {
+
+// What a pixel of a range image knows.
+enum class Pixel : std::uint8_t { kNeverObserved, kNoReturn, kMeasured };
+
+struct Direction {
+  double azimuth = 0.0;    // rad, from x towards y (left)
+  double elevation = 0.0;  // rad, upwards from the horizontal plane
+};
+
+// Where the pixels of a spherical range image look, in the level sensor frame; docs/conventions.md.
+// The centre of pixel (row, column) looks along azimuth_left - (column + 0.5) * resolution,
+// elevation_top - (row + 0.5) * resolution.
+struct SphericalGrid {
+  int width = 0;               // columns
+  int height = 0;              // rows
+  double resolution = 0.0;     // rad per pixel, > 0
+  double azimuth_left = 0.0;   // rad, left edge of column 0
+  double elevation_top = 0.0;  // rad, upper edge of row 0
+
+  int size() const { return width * height; }
+  bool Contains(int row, int column) const {
+    return row >= 0 && row < height && column >= 0 && column < width;
+  }
+  bool operator==(const SphericalGrid& other) const;
+};
+
+// Steps in which range images keep their values, so that a message holds the very same ones.
+struct PixelRounding {
+  static constexpr double kRangeUnit = 0.00125;  // m, error at most 0.6 mm; 16 bits reach 81.9 m
+  static constexpr int kMaxRangeSteps = 65534;   // "that far or farther"
+  static constexpr int kOffsetSteps = 256;       // a pixel's width in steps of the sub-pixel direction
+};
+
+// One measured pixel in its rounded form.
+struct RoundedPixel {
+  std::uint16_t range = 0;            // in kRangeUnit, 1 .. kMaxRangeSteps
+  std::int8_t offset_azimuth = 0;     // in 1 / kOffsetSteps of the resolution, from the pixel's centre
+  std::int8_t offset_elevation = 0;
+};
+
+// A range image (paper, section III-A): per pixel the nearest point measured in its direction.
+// Points are kept as they were measured, not moved to pixel centres. Values are rounded
+// (PixelRounding) when a pixel is set, so that the image can be sent and read back bit for bit.
+class RangeImage {
+ public:
+  RangeImage() = default;
+  // All pixels never observed. Throws std::invalid_argument for a grid with a negative or absurd
+  // size (over 16 million pixels) or resolution.
+  RangeImage(const SphericalGrid& grid, const Eigen::Isometry3d& T_local_sensor);
+
+  const SphericalGrid& grid() const { return grid_; }
+  int width() const { return grid_.width; }
+  int height() const { return grid_.height; }
+  // Level sensor frame to local frame.
+  const Eigen::Isometry3d& T_local_sensor() const { return T_local_sensor_; }
+
+  Pixel pixel(int row, int column) const;
+  bool measured(int row, int column) const { return range(row, column) > 0.0f; }
+  // m; 0 where nothing was measured.
+  float range(int row, int column) const { return ranges_[Index(row, column)]; }
+  // Level sensor frame, m; zero where nothing was measured.
+  const Eigen::Vector3f& point(int row, int column) const { return points_[Index(row, column)]; }
+  RoundedPixel rounded(int row, int column) const { return rounded_[Index(row, column)]; }
+
+  void SetMeasured(int row, int column, const RoundedPixel& rounded);
+  void SetNoReturn(int row, int column);
+  // Keeps the nearer of the pixel's point and this one (z-buffer). Points outside the grid are left out.
+  void AddPoint(const Eigen::Vector3d& p_sensor);
+
+  int CountMeasured() const;
+
+ private:
+  int Index(int row, int column) const { return row * grid_.width + column; }
+
+  SphericalGrid grid_;
+  Eigen::Isometry3d T_local_sensor_ = Eigen::Isometry3d::Identity();
+  std::vector<float> ranges_;
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<RoundedPixel> rounded_;  // range 0: never observed or no return
+  std::vector<std::uint8_t> no_return_;
+};
+
+// Direction of a point in the level sensor frame; p must not be zero.
+Direction DirectionOf(const Eigen::Vector3d& p_sensor);
+// Unit vector of a direction.
+Eigen::Vector3d UnitVector(const Direction& direction);
+
+struct PixelPosition {
+  double row = 0.0;     // pixel centres at k + 0.5: floor gives the index
+  double column = 0.0;
+};
+PixelPosition Project(const SphericalGrid& grid, const Eigen::Vector3d& p_sensor);
+Direction PixelDirection(const SphericalGrid& grid, double row, double column);
+
+struct RangeImageParams {
+  double resolution = 0.00698131700797732;  // rad per pixel (0.4 deg, paper section V); 0.001 .. 0.1
+  double min_range = 0.1;                   // m, nearer points belong to the sensor's carrier; >= 0
+  void Validate() const;
+};
+
+// The z-buffered range image of a scan from its sensor position; the grid is the smallest that holds
+// all points and no-return beams, its edges at whole multiples of the resolution. An empty scan gives
+// an image of size 0.
+RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params);
+
+}  // namespace rimod
