@@ -1,0 +1,18 @@
+#pragma once
+
+namespace rimod {
+
+// How processes behave on the bus; section `bus` of the configuration.
+struct BusParams {
+  double max_megabytes_per_second =
+      20.0;                  // large messages are sent at this rate at most; > 0, <= 10000
+  int burst_kilobytes = 60;  // sent at once after a rest; 60 .. 100000
+  int max_waiting_scans =
+      1;  // complete scans that wait; further ones push the oldest out; 1 .. 1000
+  double idle_time =
+      1.0;  // s, the assembler ends a sweep when nothing came for so long; 0.05 .. 3600
+  double join_patience = 5.0;  // s, wait for missing sections and partners of a scan; 0.1 .. 3600
+  void Validate() const;       // throws std::invalid_argument naming field and value
+};
+
+}  // namespace rimod

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rimod {
+
+// The channels that our processes speak on. Every name can be changed on the command line.
+struct Channels {
+  std::string laser = "LASER";                    // bot_core.planar_lidar_t
+  std::string laser_to_local = "LASER_TO_LOCAL";  // bot_core.rigid_transform_t
+  std::string scan = "RIMOD_SCAN";                // rimod.scan_t
+  std::string range_image = "RIMOD_RANGE_IMAGE";  // rimod.range_image_t
+  std::string features = "RIMOD_FEATURES";        // rimod.feature_set_t
+  std::string model = "RIMOD_MODEL";              // rimod.object_model_t
+  std::string hypotheses = "RIMOD_HYPOTHESES";    // rimod.pose_hypotheses_t
+  std::string detections = "RIMOD_DETECTIONS";    // rimod.detections_t
+  std::string status = "RIMOD_STATUS";            // rimod.status_t
+};
+
+// Applies one renaming "RIMOD_SCAN=OTHER", the left side being one of the default names. Returns an
+// error text, empty when done: no such channel, or a name that is empty, longer than LCM takes (63)
+// or holds characters that are not printable.
+std::string RenameChannel(const std::string& renaming, Channels* channels);
+
+// All default names, in the order above.
+std::vector<std::string> DefaultChannelNames();
+
+}  // namespace rimod

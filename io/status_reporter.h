@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "io/raw_subscription.h"
+#include "io/stage_timer.h"
+#include "rimod/status_t.hpp"
+
+namespace lcm {
+class LCM;
+}
+
+namespace rimod {
+
+// Counts what a process does and publishes it on RIMOD_STATUS. All methods may be called from any
+// thread. What goes wrong is logged too, each kind (channel and cause) once.
+class StatusReporter {
+ public:
+  StatusReporter(lcm::LCM* lcm, std::string channel, std::string process);
+
+  void CountIn();
+  void CountOut();
+  // A scan, or parts of it, given up; cause is a short name such as "scans_overtaken".
+  void CountDropped(const std::string& cause, std::int64_t number = 1);
+  // A message that could not be used.
+  void CountRejected(const std::string& channel, const std::string& cause);
+  // A named number of one's own; must not fall. Its growth counts as dropped when
+  // counts_as_dropped.
+  void SetCounter(const std::string& name, std::int64_t value, bool counts_as_dropped = false);
+  // The stages of one scan; the status has each stage's median over the last scans.
+  void AddStageTimes(const StageTimes& times);
+  // Logs an error, each kind once, and keeps it as the last.
+  void ReportError(const std::string& kind, const std::string& text);
+
+  // Observer that counts a subscription's messages here; this object must outlive it.
+  SubscriptionObserver MakeObserver();
+
+  // Publishes when a second has passed since the last time.
+  void PublishIfDue();
+  void Publish();
+  status_t Snapshot() const;
+
+ private:
+  mutable std::mutex mutex_;
+  lcm::LCM* lcm_;
+  std::string channel_;
+  status_t totals_;                               // without lists
+  std::map<std::string, std::int64_t> counters_;  // by name
+  std::map<std::string, std::deque<double>> stage_times_;
+  std::deque<std::string> stage_order_;  // as first seen
+  std::set<std::string> logged_;         // kinds
+  std::chrono::steady_clock::time_point next_publish_;
+};
+
+}  // namespace rimod
