@@ -11,8 +11,8 @@ namespace rimod {
 struct Execution {
   // Calls body(i) for every i in [0, count), in any order, on any threads, and returns when all are
   // done. Results do not depend on the order: body(i) writes slot i only.
-  std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)> parallel_for =
-      [](std::size_t count, const std::function<void(std::size_t)>& body) {
+  std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>
+      parallel_for = [](std::size_t count, const std::function<void(std::size_t)>& body) {
         for (std::size_t i = 0; i < count; ++i) body(i);
       };
   // Called with a stage's name when it begins and when it has ended; stages do not nest.

@@ -14,8 +14,10 @@ constexpr std::int16_t kEmptyCell = INT16_MIN;
 
 // An interest point with the description of the surface around it (paper, section III-A).
 struct Feature {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  // m; level sensor frame, or object frame in models
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    // unit, towards the side that was seen; same frame
+  Eigen::Vector3f position =
+      Eigen::Vector3f::Zero();  // m; level sensor frame, or object frame in models
+  Eigen::Vector3f normal =
+      Eigen::Vector3f::Zero();  // unit, towards the side that was seen; same frame
   Descriptor descriptor;
 };
 

@@ -37,13 +37,13 @@ struct SphericalGrid {
 struct PixelRounding {
   static constexpr double kRangeUnit = 0.00125;  // m, error at most 0.6 mm; 16 bits reach 81.9 m
   static constexpr int kMaxRangeSteps = 65534;   // "that far or farther"
-  static constexpr int kOffsetSteps = 256;       // a pixel's width in steps of the sub-pixel direction
+  static constexpr int kOffsetSteps = 256;  // a pixel's width in steps of the sub-pixel direction
 };
 
 // One measured pixel in its rounded form.
 struct RoundedPixel {
-  std::uint16_t range = 0;            // in kRangeUnit, 1 .. kMaxRangeSteps
-  std::int8_t offset_azimuth = 0;     // in 1 / kOffsetSteps of the resolution, from the pixel's centre
+  std::uint16_t range = 0;         // in kRangeUnit, 1 .. kMaxRangeSteps
+  std::int8_t offset_azimuth = 0;  // in 1 / kOffsetSteps of the resolution, from the pixel's centre
   std::int8_t offset_elevation = 0;
 };
 
@@ -73,8 +73,11 @@ class RangeImage {
 
   void SetMeasured(int row, int column, const RoundedPixel& rounded);
   void SetNoReturn(int row, int column);
-  // Keeps the nearer of the pixel's point and this one (z-buffer). Points outside the grid are left out.
-  void AddPoint(const Eigen::Vector3d& p_sensor);
+  // Keeps the nearer of the pixel's point and each beam's (z-buffer); one range (m) a direction.
+  // Directions outside the grid are left out.
+  void AddBeams(const std::vector<Direction>& directions, const std::vector<double>& ranges);
+  // Marks a pixel in which nothing is measured.
+  void AddNoReturn(const Direction& direction);
 
   int CountMeasured() const;
 
@@ -95,21 +98,23 @@ Direction DirectionOf(const Eigen::Vector3d& p_sensor);
 Eigen::Vector3d UnitVector(const Direction& direction);
 
 struct PixelPosition {
-  double row = 0.0;     // pixel centres at k + 0.5: floor gives the index
+  double row = 0.0;  // pixel centres at k + 0.5: floor gives the index
   double column = 0.0;
 };
+PixelPosition ProjectDirection(const SphericalGrid& grid, const Direction& direction);
 PixelPosition Project(const SphericalGrid& grid, const Eigen::Vector3d& p_sensor);
 Direction PixelDirection(const SphericalGrid& grid, double row, double column);
 
 struct RangeImageParams {
-  double resolution = 0.00698131700797732;  // rad per pixel (0.4 deg, paper section V); 0.001 .. 0.1
-  double min_range = 0.1;                   // m, nearer points belong to the sensor's carrier; >= 0
+  double resolution =
+      0.00698131700797732;  // rad per pixel (0.4 deg, paper section V); 0.001 .. 0.1
+  double min_range = 0.1;   // m, nearer points belong to the sensor's carrier; >= 0
   void Validate() const;
 };
 
-// The z-buffered range image of a scan from its sensor position; the grid is the smallest that holds
-// all points and no-return beams, its edges at whole multiples of the resolution. An empty scan gives
-// an image of size 0.
+// The z-buffered range image of a scan from its sensor position; the grid is the smallest that
+// holds all points and no-return beams, its edges at whole multiples of the resolution. An empty
+// scan gives an image of size 0.
 RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params);
 
 }  // namespace rimod

@@ -10,8 +10,7 @@ Eigen::Isometry3d LevelPose(const Eigen::Isometry3d& T_local_any) {
   const bool vertical = forward.head<2>().norm() < kVertical;
   const double heading = vertical ? 0.0 : std::atan2(forward.y(), forward.x());
   Eigen::Isometry3d T_local_level = Eigen::Isometry3d::Identity();
-  T_local_level.linear() =
-      Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T_local_level.linear() = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   T_local_level.translation() = T_local_any.translation();
   return T_local_level;
 }

@@ -16,8 +16,8 @@ struct Scan {
   std::vector<Eigen::Vector3f> no_return_directions;
 };
 
-// The level pose at T's position: keeps the heading of T's x-axis and makes z parallel to the world's.
-// A vertical x-axis gives heading 0.
+// The level pose at T's position: keeps the heading of T's x-axis and makes z parallel to the
+// world's. A vertical x-axis gives heading 0.
 Eigen::Isometry3d LevelPose(const Eigen::Isometry3d& T_local_any);
 
 }  // namespace rimod

@@ -1,119 +1,57 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <chrono>
-#include <cstdint>
 #include <deque>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "rimod/scan.h"
+#include "rimod/line_placer.h"
+#include "rimod/pose_track.h"
+#include "rimod/sweep.h"
+#include "rimod/sweep_collector.h"
 
 namespace rimod {
-
-// Time since the epoch of whoever stamped the measurements.
-using Time = std::chrono::microseconds;
-
-// One line of a 2D laser scanner.
-struct LaserLine {
-  Time time{0};                // of the first beam
-  double first_angle = 0.0;    // rad, about z from x, of the first beam
-  double angle_step = 0.0;     // rad, from one beam to the next
-  std::vector<float> ranges;   // m, in the order of measuring
-};
-
-struct TimedPose {
-  Time time{0};
-  Eigen::Isometry3d T_local_laser = Eigen::Isometry3d::Identity();
-};
-
-struct SweepParams {
-  double line_duration = 0.02667;      // s, one line from its first beam to the next line's; > 0
-  int beams_per_line = 361;            // beam i is measured at time + i / beams_per_line * line_duration; >= 1
-  double min_range = 0.3;              // m, shorter readings hit the robot itself or are dazzled; >= 0
-  double max_range = 81.9;             // m, readings at or above are "no return"; > min_range
-  double reversal_angle = 0.0175;      // rad, the tilt must come back this far to end a sweep; > 0
-  double pause_duration = 0.5;         // s, a gap in the lines or a tilt at rest this long ends a sweep; > 0
-  double rest_rate = 0.0087;           // rad/s, a tilt slower than this is at rest; >= 0
-  double min_sweep_angle = 0.35;       // rad, a sweep that turned less is incomplete; > 0
-  double max_missing_share = 0.05;     // of a sweep's lines may be missing, else it is incomplete; 0 .. 1
-  double max_pose_gap = 0.2;           // s, poses farther apart are not interpolated; > 0
-  int max_buffered_lines = 200;        // lines kept while they wait for a pose; >= 1
-  int max_lines = 20000;               // a sweep longer than this is ended as incomplete; >= 1
-  void Validate() const;               // throws std::invalid_argument naming field and value
-};
-
-// A sweep that has ended, by reversal or pause of the tilt or by Finish().
-struct Sweep {
-  Time begin{0};                       // first beam
-  Time end{0};                         // last beam
-  Scan scan;                           // empty when the sweep is incomplete
-  int num_lines = 0;
-  int num_missing_lines = 0;           // holes in the lines' times
-  std::string incomplete_reason;       // empty: the sweep is complete and scan can be used
-  bool complete() const { return incomplete_reason.empty(); }
-};
-
-// What was left out so far, by cause. All of it is counted, nothing of it stops the assembler.
-struct SweepCounters {
-  std::int64_t lines = 0;              // taken into sweeps
-  std::int64_t poses = 0;              // taken
-  std::int64_t bad_lines = 0;          // empty, angles not finite, more beams than a turn holds
-  std::int64_t bad_poses = 0;          // not finite, quaternion of length 0
-  std::int64_t unordered_lines = 0;    // repeated or older than one already taken
-  std::int64_t unordered_poses = 0;
-  std::int64_t lines_without_pose = 0; // no pose before or none after within max_pose_gap
-  std::int64_t bad_ranges = 0;         // NaN, negative
-  std::int64_t near_ranges = 0;        // below min_range
-  std::int64_t missing_lines = 0;
-  std::int64_t clock_jumps = 0;        // time ran backwards: everything buffered was given up
-  std::int64_t incomplete_sweeps = 0;
-};
 
 // Joins laser lines and the poses of a tilting laser into sweeps (paper, section V: a laser on a
 // pan-tilt unit). Each beam is placed by the pose at its own time, interpolated between the poses
 // before and after it. Lines and poses may arrive interleaved in any order between the two streams;
 // each stream itself in the order of time. The result depends on the measurements only, not on when
-// they arrive relative to the other stream.
+// they arrive relative to the other stream, as long as neither stream is ahead by more than the
+// buffers hold (max_buffered_lines, max_buffered_poses).
+//
+// A scan's sensor pose: the mean position of the laser over the sweep's lines, with the heading of
+// the mean of its forward directions.
 class SweepAssembler {
  public:
+  // Throws std::invalid_argument for parameters out of range.
   explicit SweepAssembler(const SweepParams& params);
 
   // Each returns the sweeps that this input ended, oldest first; mostly none.
   std::vector<Sweep> AddLine(LaserLine line);
   std::vector<Sweep> AddPose(const TimedPose& pose);
 
-  // No more input for now: places what can be placed and ends the sweep at hand.
+  // No more input for now: places what can be placed, ends the sweep at hand and forgets lines,
+  // poses and times, so that input of any time may follow. Counters go on.
   std::vector<Sweep> Finish();
 
   // True while a sweep is being collected.
-  bool collecting() const { return num_lines_ > 0 || !waiting_.empty(); }
-  const SweepCounters& counters() const { return counters_; }
+  bool collecting() const { return !collector_.empty() || !waiting_.empty(); }
+  SweepCounters counters() const;
 
  private:
-  void Reset();
   void PlaceWaiting(std::vector<Sweep>* ended);
-  bool PlaceLine(const LaserLine& line, std::vector<Sweep>* ended);
-  std::optional<Eigen::Isometry3d> PoseAt(double seconds_after_first_pose) const;
-  Sweep EndSweep();
+  void HandleLineClockJump(Time to, std::vector<Sweep>* ended);
+  void HandlePoseClockJump(Time to, std::vector<Sweep>* ended);
+  void GiveUpLines(std::vector<Sweep>* ended);
+  void DropWaitingFrom(Time time);
 
   SweepParams params_;
-  SweepCounters counters_;
-  std::deque<LaserLine> waiting_;      // lines whose last beam has no pose after it yet
-  std::deque<TimedPose> poses_;
-  std::optional<Time> last_line_;      // taken, for the order of lines
-  std::optional<double> last_tilt_;    // rad, of the last placed line
-  double extreme_tilt_ = 0.0;          // rad, farthest in the direction of the sweep
-  double first_tilt_ = 0.0;            // rad, of the sweep's first line
-  int direction_ = 0;                  // of the tilt: -1, 0 = not known yet, +1
-  Time rest_since_{0};
-  int num_lines_ = 0;
-  int num_missing_lines_ = 0;
-  Time begin_{0}, end_{0};
-  std::vector<Eigen::Vector3f> points_;
-  std::vector<Eigen::Vector3f> no_return_directions_;
-  std::vector<Eigen::Isometry3d> sensor_poses_;
+  SweepCounters counters_;         // without those that the collector counts
+  std::deque<LaserLine> waiting_;  // lines whose last beam has no pose after it yet
+  PoseTrack poses_;
+  LinePlacer placer_;
+  SweepCollector collector_;
+  std::optional<Time> last_line_;  // taken, for the order of lines
+  std::optional<Time> last_pose_;
 };
 
 }  // namespace rimod

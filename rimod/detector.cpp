@@ -1,0 +1,147 @@
+#include "rimod/detector.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "rimod/goodsac.h"
+#include "rimod/matching.h"
+#include "rimod/scoring.h"
+
+namespace rimod {
+namespace {
+
+using CandidateList = std::vector<Candidate>;
+
+std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features,
+                                                      const ModelDatabase& database,
+                                                      const PipelineParams& params,
+                                                      const Execution& execution) {
+  const StageScope stage(execution, "matching");
+  std::vector<std::vector<Correspondence>> by_model(database.models().size());
+  for (const Correspondence& match :
+       MatchFeatures(features.features, database.descriptors(), params.matching, execution)) {
+    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
+    by_model[origin.model].push_back({match.scene_feature, origin.feature, match.distance});
+  }
+  return by_model;
+}
+
+std::vector<std::vector<Eigen::Isometry3d>> GeneratePoses(
+    const std::vector<std::vector<Correspondence>>& correspondences, const FeatureSet& features,
+    const ModelDatabase& database, const PipelineParams& params, const Execution& execution) {
+  const StageScope stage(execution, "hypotheses");
+  std::vector<std::vector<Eigen::Isometry3d>> poses(correspondences.size());
+  execution.parallel_for(poses.size(), [&](std::size_t m) {
+    poses[m] = CandidatePoses(correspondences[m], features.features,
+                              database.features(static_cast<int>(m)), params.goodsac);
+  });
+  return poses;
+}
+
+CandidateList ScorePoses(const RangeImage& image,
+                         const std::vector<std::vector<Eigen::Isometry3d>>& poses,
+                         const ModelDatabase& database, const PipelineParams& params,
+                         const Execution& execution) {
+  const StageScope stage(execution, "scoring");
+  std::vector<CandidateList> scored(poses.size());
+  execution.parallel_for(poses.size(), [&](std::size_t m) {
+    for (const Eigen::Isometry3d& pose : poses[m]) {
+      const double score = ScorePose(image, database.models()[m], pose, params.scoring);
+      if (score >= params.scoring.gamma) scored[m].push_back({static_cast<int>(m), pose, score});
+    }
+  });
+  CandidateList all;
+  for (const CandidateList& list : scored) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+CandidateList ValidateCandidates(const RangeImage& image, const CandidateList& candidates,
+                                 const ModelDatabase& database, const PipelineParams& params,
+                                 const Execution& execution) {
+  const StageScope stage(execution, "validation");
+  CandidateList validated = candidates;
+  execution.parallel_for(validated.size(), [&](std::size_t i) {
+    validated[i].score = ValidatePose(image, database.models()[validated[i].model],
+                                      validated[i].T_sensor_object, params.validation);
+  });
+  validated.erase(std::remove_if(validated.begin(), validated.end(),
+                                 [&](const Candidate& candidate) {
+                                   return candidate.score < params.validation.min_score;
+                                 }),
+                  validated.end());
+  std::sort(validated.begin(), validated.end(), BetterCandidate);
+  return validated;
+}
+
+// The candidates of a later stage first, each listed with the last stage that it passed.
+void ReportHypotheses(const RangeImage& image, const ModelDatabase& database,
+                      const std::vector<std::pair<HypothesisStage, const CandidateList*>>& stages,
+                      int max_reported, DetectionResult* result) {
+  const auto same = [](const Candidate& a, const Candidate& b) {
+    return a.model == b.model && a.T_sensor_object.matrix() == b.T_sensor_object.matrix();
+  };
+  CandidateList reported;
+  for (const auto& [stage, candidates] : stages) {
+    for (const Candidate& candidate : *candidates) {
+      if (static_cast<int>(reported.size()) >= max_reported) return;
+      if (std::any_of(reported.begin(), reported.end(),
+                      [&](const Candidate& other) { return same(candidate, other); }))
+        continue;
+      reported.push_back(candidate);
+      result->hypotheses.push_back({database.models()[candidate.model].name,
+                                    image.T_local_sensor() * candidate.T_sensor_object,
+                                    candidate.score, stage});
+    }
+  }
+}
+
+Detection ToDetection(const RangeImage& image, const ModelDatabase& database,
+                      const Candidate& candidate) {
+  const ObjectModel& model = database.models()[candidate.model];
+  return {model.name, image.T_local_sensor() * candidate.T_sensor_object, model.box_min,
+          model.box_max, candidate.score};
+}
+
+}  // namespace
+
+RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
+                             const Execution& execution) {
+  const StageScope stage(execution, "range_image");
+  return MakeRangeImage(scan, params.range_image);
+}
+
+DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,
+                              const ModelDatabase& database, const PipelineParams& params,
+                              const Execution& execution) {
+  if (features.descriptor_kind != params.range_patch.Kind()) {
+    throw std::invalid_argument("features are of kind '" + features.descriptor_kind + "', not '" +
+                                params.range_patch.Kind() + "'");
+  }
+  const auto correspondences = MatchByModel(features, database, params, execution);
+  const auto poses = GeneratePoses(correspondences, features, database, params, execution);
+  CandidateList scored = ScorePoses(image, poses, database, params, execution);
+  const int num_found = static_cast<int>(scored.size());
+  CandidateList pruned, collision_free;
+  {
+    const StageScope stage(execution, "collisions");
+    std::sort(scored.begin(), scored.end(), BetterCandidate);
+    pruned = PruneToLocalBest(scored, database.models(), params.pruning);
+    collision_free = RejectCollisions(pruned, database.collision_shapes(), params.collisions);
+  }
+  const CandidateList validated =
+      ValidateCandidates(image, collision_free, database, params, execution);
+
+  DetectionResult result;
+  result.num_hypotheses_found = num_found;
+  for (const Candidate& candidate : validated)
+    result.detections.push_back(ToDetection(image, database, candidate));
+  ReportHypotheses(image, database,
+                   {{HypothesisStage::kValidated, &validated},
+                    {HypothesisStage::kNoCollision, &collision_free},
+                    {HypothesisStage::kPruned, &pruned},
+                    {HypothesisStage::kScored, &scored}},
+                   params.max_reported_hypotheses, &result);
+  return result;
+}
+
+}  // namespace rimod

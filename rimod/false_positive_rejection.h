@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "rimod/object_model.h"
+#include "rimod/point_tree.h"
+#include "rimod/range_image.h"
+#include "rimod/scoring.h"
+
+namespace rimod {
+
+// Rejection of false positives (paper, section III-D): the best of a local area, no collisions
+// between neighbours, and the same range image as rendered.
+
+// A scored pose of one of the database's models.
+struct Candidate {
+  int model = 0;  // in the database
+  Eigen::Isometry3d T_sensor_object = Eigen::Isometry3d::Identity();
+  double score = 0.0;
+};
+
+// Falling score; ties by model, then position, so that the order is unique.
+bool BetterCandidate(const Candidate& a, const Candidate& b);
+
+struct PruningParams {
+  double radius =
+      0.3;  // of the model's diameter: of one model only the best within it is kept; 0 .. 10
+  void Validate() const;
+};
+
+// The candidates that are the best of their model in their area, best first.
+std::vector<Candidate> PruneToLocalBest(std::vector<Candidate> candidates,
+                                        const std::vector<ObjectModel>& models,
+                                        const PruningParams& params);
+
+struct CollisionParams {
+  double cell = 0.05;       // m, spacing of the low-resolution clouds; 0.005 .. 1
+  double max_share = 0.15;  // of the smaller cloud's points within a cell of the other's; 0 .. 1
+  void Validate() const;
+};
+
+// A model's low-resolution cloud in a kd-tree.
+class CollisionShape {
+ public:
+  CollisionShape(const ObjectModel& model, double cell);
+
+  const std::vector<Eigen::Vector3d>& points() const { return tree_.points(); }  // m, object frame
+  const Eigen::Vector3d& centre() const { return centre_; }  // m, middle of the model's box
+  double radius() const { return radius_; }  // m, of the ball around it that holds all
+  // Whether a point of the cloud is nearer to p_object than distance.
+  bool HasPointWithin(const Eigen::Vector3d& p_object, double distance) const;
+
+ private:
+  PointTree tree_;
+  Eigen::Vector3d centre_;
+  double radius_ = 0.0;
+};
+
+// The candidates that collide with no better one, best first; given best first.
+std::vector<Candidate> RejectCollisions(const std::vector<Candidate>& candidates,
+                                        const std::vector<CollisionShape>& shapes,
+                                        const CollisionParams& params);
+
+struct ValidationParams {
+  ScoringParams scoring;   // for the pixel-by-pixel comparison
+  double min_score = 0.4;  // candidates below are false positives; 0 .. 1
+  int min_pixels = 20;     // of the model in the image, fewer say nothing; >= 1
+  void Validate() const;
+};
+
+// Score of a candidate by comparing the image with the model rendered at its pose, pixel by pixel;
+// 0 when fewer than min_pixels of the model would be seen.
+double ValidatePose(const RangeImage& image, const ObjectModel& model,
+                    const Eigen::Isometry3d& T_sensor_object, const ValidationParams& params);
+
+}  // namespace rimod

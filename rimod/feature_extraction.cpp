@@ -1,0 +1,76 @@
+#include "rimod/feature_extraction.h"
+
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "rimod/interest_points.h"
+#include "rimod/model_views.h"
+#include "rimod/range_patch.h"
+
+namespace rimod {
+namespace {
+
+void MoveToObjectFrame(const Eigen::Isometry3d& T_object_sensor, Feature* feature) {
+  feature->position = (T_object_sensor * feature->position.cast<double>()).cast<float>();
+  feature->normal = (T_object_sensor.linear() * feature->normal.cast<double>()).cast<float>();
+}
+
+ModelView ComputeView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
+                      const PipelineParams& params) {
+  const RangeImage image = RenderView(model, viewpoint, params.range_image.resolution);
+  ModelView view;
+  view.viewpoint = viewpoint;
+  view.features = ExtractFeatures(image, params, Execution{}).features;
+  for (Feature& feature : view.features) MoveToObjectFrame(image.T_local_sensor(), &feature);
+  view.validation_points = SampleValidationPoints(image, params.model_views.validation_points);
+  return view;
+}
+
+// What a model's features depend on besides its surface.
+std::string ModelFeatureKind(const PipelineParams& params) {
+  std::ostringstream kind;
+  kind << params.range_patch.Kind() << "; " << params.interest_points.Kind() << "; "
+       << params.model_views.Kind() << "; pixel " << params.range_image.resolution;
+  return kind.str();
+}
+
+}  // namespace
+
+FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params,
+                           const Execution& execution) {
+  std::vector<PixelIndex> interest_points;
+  {
+    const StageScope stage(execution, "interest_points");
+    interest_points = FindInterestPoints(image, params.interest_points);
+  }
+  const StageScope stage(execution, "descriptors");
+  std::vector<std::optional<Feature>> described(interest_points.size());
+  execution.parallel_for(interest_points.size(), [&](std::size_t i) {
+    described[i] = DescribePatch(image, interest_points[i], params.range_patch);
+  });
+  FeatureSet set;
+  set.descriptor_kind = params.range_patch.Kind();
+  set.descriptor_size = params.range_patch.resolution * params.range_patch.resolution;
+  for (std::optional<Feature>& feature : described)
+    if (feature) set.features.push_back(std::move(*feature));
+  return set;
+}
+
+void ComputeModelViews(const PipelineParams& params, const Execution& execution,
+                       ObjectModel* model) {
+  const std::vector<Eigen::Vector3d> viewpoints = Viewpoints(*model, params.model_views);
+  std::vector<ModelView> views(viewpoints.size());
+  execution.parallel_for(viewpoints.size(), [&](std::size_t i) {
+    views[i] = ComputeView(*model, viewpoints[i], params);
+  });
+  model->views = std::move(views);
+  model->descriptor_kind = ModelFeatureKind(params);
+  model->descriptor_size = params.range_patch.resolution * params.range_patch.resolution;
+}
+
+bool ModelMatchesParams(const ObjectModel& model, const PipelineParams& params) {
+  return model.descriptor_kind == ModelFeatureKind(params);
+}
+
+}  // namespace rimod

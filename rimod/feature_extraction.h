@@ -1,0 +1,24 @@
+#pragma once
+
+#include "rimod/execution.h"
+#include "rimod/features.h"
+#include "rimod/object_model.h"
+#include "rimod/params.h"
+#include "rimod/range_image.h"
+
+namespace rimod {
+
+// The features of a range image: interest points with descriptors, strongest first (paper, section
+// III-A). Stages interest_points and descriptors. Points without a normal are left out.
+FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params,
+                           const Execution& execution);
+
+// Features and validation points of a model whose surface (name, box, points, normals,
+// point_spacing) is given: renders its virtual views and extracts them (sections III-A, III-C).
+void ComputeModelViews(const PipelineParams& params, const Execution& execution,
+                       ObjectModel* model);
+
+// True when the model's features were extracted in the way that these parameters give.
+bool ModelMatchesParams(const ObjectModel& model, const PipelineParams& params);
+
+}  // namespace rimod

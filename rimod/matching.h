@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "rimod/descriptor_index.h"
+#include "rimod/execution.h"
+#include "rimod/features.h"
+
+namespace rimod {
+
+// A feature of the scene that may be the same as one of a model (paper, section III-A).
+struct Correspondence {
+  int scene_feature = 0;
+  int model_feature = 0;  // in whatever list the index was built from
+  double distance = 0.0;  // m, between the descriptors
+};
+
+struct MatchingParams {
+  double max_descriptor_distance = 0.03;  // m, root mean square a cell; d_max of the paper; > 0
+  int max_matches = 60;                   // nearest model features kept for one of the scene; >= 1
+  int max_checks = 800;                   // model features looked at for one of the scene; >= 1
+  void Validate() const;
+};
+
+// The correspondences of each scene feature, scene features in order, each with its nearest first.
+std::vector<Correspondence> MatchFeatures(const std::vector<Feature>& scene,
+                                          const DescriptorIndex& index,
+                                          const MatchingParams& params, const Execution& execution);
+
+}  // namespace rimod

@@ -1,0 +1,123 @@
+#include "rimod/model_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "rimod/check.h"
+#include "rimod/surface_rendering.h"
+
+namespace rimod {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Eigen::Vector3d CentreOf(const ObjectModel& model) { return 0.5 * (model.box_min + model.box_max); }
+
+// The level pose at the viewpoint that looks towards the object's centre.
+Eigen::Isometry3d ViewPose(const ObjectModel& model, const Eigen::Vector3d& viewpoint) {
+  const Eigen::Vector3d forward = CentreOf(model) - viewpoint;
+  Eigen::Isometry3d T_object_sensor = Eigen::Isometry3d::Identity();
+  T_object_sensor.linear() =
+      Eigen::AngleAxisd(std::atan2(forward.y(), forward.x()), Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  T_object_sensor.translation() = viewpoint;
+  return T_object_sensor;
+}
+
+// A grid that holds the ball around the model, with a margin of some pixels.
+SphericalGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_object_sensor,
+                         double resolution) {
+  constexpr int kMargin = 4;
+  const Eigen::Vector3d centre = T_object_sensor.inverse() * CentreOf(model);
+  const double angle = std::asin(std::min(0.5 * model.Diameter() / centre.norm(), 0.9));
+  const Direction middle = DirectionOf(centre);
+  const double widening = 1.0 / std::max(std::cos(middle.elevation), 0.2);
+  const int half_rows = static_cast<int>(std::ceil(angle / resolution)) + kMargin;
+  const int half_columns = static_cast<int>(std::ceil(angle * widening / resolution)) + kMargin;
+  SphericalGrid grid;
+  grid.resolution = resolution;
+  grid.width = 2 * half_columns;
+  grid.height = 2 * half_rows;
+  grid.azimuth_left = middle.azimuth + half_columns * resolution;
+  grid.elevation_top = middle.elevation + half_rows * resolution;
+  return grid;
+}
+
+}  // namespace
+
+void ModelViewParams::Validate() const {
+  CheckWithin("model_views azimuths", azimuths, 1, 360);
+  CheckWithin("model_views elevations", elevations, 1, 30);
+  CheckWithin("model_views min_elevation", min_elevation, -1.4, 1.4);
+  CheckWithin("model_views max_elevation", max_elevation, min_elevation, 1.4);
+  CheckWithin("model_views distance", distance, 0.1, 100.0);
+  CheckWithin("model_views validation_points", validation_points, 1, 10000);
+}
+
+std::string ModelViewParams::Kind() const {
+  std::ostringstream kind;
+  kind << "views " << azimuths << " x " << elevations << ' ' << min_elevation << ' '
+       << max_elevation << " at " << distance << ' ' << validation_points;
+  return kind.str();
+}
+
+std::vector<Eigen::Vector3d> Viewpoints(const ObjectModel& model, const ModelViewParams& params) {
+  params.Validate();
+  const double distance = std::max(params.distance, 1.5 * model.Diameter());
+  const double step = params.elevations > 1
+                          ? (params.max_elevation - params.min_elevation) / (params.elevations - 1)
+                          : 0.0;
+  std::vector<Eigen::Vector3d> viewpoints;
+  for (int e = 0; e < params.elevations; ++e) {
+    for (int a = 0; a < params.azimuths; ++a) {
+      const Direction direction{2.0 * kPi * a / params.azimuths, params.min_elevation + e * step};
+      viewpoints.push_back(CentreOf(model) + distance * UnitVector(direction));
+    }
+  }
+  return viewpoints;
+}
+
+RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
+                      double resolution) {
+  const Eigen::Isometry3d T_object_sensor = ViewPose(model, viewpoint);
+  const SphericalGrid grid = GridAround(model, T_object_sensor, resolution);
+  const RenderedModel rendered = RenderModel(model, T_object_sensor.inverse(), grid);
+  RangeImage image(grid, T_object_sensor);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) image.SetNoReturn(row, column);
+  for (int row = 0; row < rendered.height; ++row) {
+    for (int column = 0; column < rendered.width; ++column) {
+      if (rendered.point(row, column) < 0) continue;
+      const double steps = std::round(rendered.range(row, column) / PixelRounding::kRangeUnit);
+      const double clamped = std::clamp(steps, 1.0, double{PixelRounding::kMaxRangeSteps});
+      image.SetMeasured(rendered.first_row + row, rendered.first_column + column,
+                        {static_cast<std::uint16_t>(clamped), 0, 0});
+    }
+  }
+  return image;
+}
+
+std::vector<Eigen::Vector3f> SampleValidationPoints(const RangeImage& image, int count) {
+  std::vector<Eigen::Vector3f> measured;
+  for (int row = 0; row < image.height(); ++row)
+    for (int column = 0; column < image.width(); ++column)
+      if (image.measured(row, column)) measured.push_back(image.point(row, column));
+  // Steps of the golden ratio through the pixels in reading order spread any number of them evenly.
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const std::size_t size = measured.size();
+  std::vector<char> taken(size, 0);
+  std::vector<Eigen::Vector3f> points;
+  const std::size_t wanted = std::min(size, static_cast<std::size_t>(count));
+  for (std::size_t i = 0; points.size() < wanted; ++i) {
+    const double phase = kGoldenRatio * static_cast<double>(i + 1);
+    std::size_t k =
+        static_cast<std::size_t>((phase - std::floor(phase)) * static_cast<double>(size));
+    while (taken[k]) k = (k + 1) % size;
+    taken[k] = 1;
+    points.push_back((image.T_local_sensor() * measured[k].cast<double>()).cast<float>());
+  }
+  return points;
+}
+
+}  // namespace rimod

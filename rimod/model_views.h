@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "rimod/object_model.h"
+#include "rimod/range_image.h"
+
+namespace rimod {
+
+struct ModelViewParams {
+  int azimuths = 16;   // viewpoints around the object; 1 .. 360
+  int elevations = 3;  // rings of viewpoints; 1 .. 30
+  double min_elevation =
+      0.09;  // rad, of the lowest ring, seen from the object's centre; -1.4 .. 1.4
+  double max_elevation = 0.79;  // rad, of the highest ring; >= min_elevation
+  double distance = 2.5;        // m, from the object's centre, at least 1.5 diameters; > 0
+  int validation_points = 100;  // n of the paper, a view; 1 .. 10000
+  void Validate() const;
+  std::string Kind() const;  // all of it in words: equal when the views are
+};
+
+// Where the virtual views are taken from: rings around the middle of the box, object frame, m.
+std::vector<Eigen::Vector3d> Viewpoints(const ObjectModel& model, const ModelViewParams& params);
+
+// The range image of the model alone from a viewpoint, level, x towards the object's centre; pixels
+// beside it are "no return". T_local_sensor takes it to the object frame.
+RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
+                      double resolution);
+
+// Up to count points of the image, spread evenly over the measured pixels, in its local frame.
+std::vector<Eigen::Vector3f> SampleValidationPoints(const RangeImage& image, int count);
+
+}  // namespace rimod

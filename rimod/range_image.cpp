@@ -1,0 +1,211 @@
+#include "rimod/range_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace rimod {
+namespace {
+
+constexpr int kMaxPixels = 16'000'000;
+constexpr double kPi = 3.14159265358979323846;
+
+void CheckGrid(const SphericalGrid& grid) {
+  const bool sane_size = grid.width >= 0 && grid.height >= 0 &&
+                         static_cast<std::int64_t>(grid.width) * grid.height <= kMaxPixels;
+  if (!sane_size) {
+    throw std::invalid_argument("range image of " + std::to_string(grid.width) + " x " +
+                                std::to_string(grid.height) + " pixels");
+  }
+  if (grid.size() > 0 && !(std::isfinite(grid.resolution) && grid.resolution > 0.0)) {
+    throw std::invalid_argument("range image with resolution " + std::to_string(grid.resolution));
+  }
+  if (!std::isfinite(grid.azimuth_left) || !std::isfinite(grid.elevation_top)) {
+    throw std::invalid_argument("range image whose edges are not finite");
+  }
+}
+
+// The sub-pixel part of a position in steps, from the pixel's centre, growing against the index
+// (azimuth and elevation fall with column and row).
+std::int8_t OffsetSteps(double position, int index) {
+  const double steps = (index + 0.5 - position) * PixelRounding::kOffsetSteps;
+  return static_cast<std::int8_t>(std::clamp(std::lround(steps), -128L, 127L));
+}
+
+std::uint16_t RangeSteps(double range) {
+  const double steps = std::clamp(std::round(range / PixelRounding::kRangeUnit), 1.0,
+                                  static_cast<double>(PixelRounding::kMaxRangeSteps));
+  return static_cast<std::uint16_t>(steps);
+}
+
+struct Bounds {
+  double azimuth_min = kPi, azimuth_max = -kPi;
+  double elevation_min = kPi, elevation_max = -kPi;
+  void Include(const Direction& direction) {
+    azimuth_min = std::min(azimuth_min, direction.azimuth);
+    azimuth_max = std::max(azimuth_max, direction.azimuth);
+    elevation_min = std::min(elevation_min, direction.elevation);
+    elevation_max = std::max(elevation_max, direction.elevation);
+  }
+  bool empty() const { return azimuth_min > azimuth_max; }
+};
+
+SphericalGrid GridFor(const Bounds& bounds, double resolution) {
+  SphericalGrid grid;
+  grid.resolution = resolution;
+  if (bounds.empty()) return grid;
+  const double left = std::floor(bounds.azimuth_max / resolution) + 1.0;
+  const double right = std::floor(bounds.azimuth_min / resolution);
+  const double top = std::floor(bounds.elevation_max / resolution) + 1.0;
+  const double bottom = std::floor(bounds.elevation_min / resolution);
+  grid.azimuth_left = left * resolution;
+  grid.elevation_top = top * resolution;
+  grid.width = static_cast<int>(left - right);
+  grid.height = static_cast<int>(top - bottom);
+  return grid;
+}
+
+}  // namespace
+
+bool SphericalGrid::operator==(const SphericalGrid& other) const {
+  return width == other.width && height == other.height && resolution == other.resolution &&
+         azimuth_left == other.azimuth_left && elevation_top == other.elevation_top;
+}
+
+Direction DirectionOf(const Eigen::Vector3d& p_sensor) {
+  return {std::atan2(p_sensor.y(), p_sensor.x()),
+          std::atan2(p_sensor.z(), p_sensor.head<2>().norm())};
+}
+
+Eigen::Vector3d UnitVector(const Direction& direction) {
+  const double horizontal = std::cos(direction.elevation);
+  return {horizontal * std::cos(direction.azimuth), horizontal * std::sin(direction.azimuth),
+          std::sin(direction.elevation)};
+}
+
+PixelPosition ProjectDirection(const SphericalGrid& grid, const Direction& direction) {
+  return {(grid.elevation_top - direction.elevation) / grid.resolution,
+          (grid.azimuth_left - direction.azimuth) / grid.resolution};
+}
+
+PixelPosition Project(const SphericalGrid& grid, const Eigen::Vector3d& p_sensor) {
+  return ProjectDirection(grid, DirectionOf(p_sensor));
+}
+
+Direction PixelDirection(const SphericalGrid& grid, double row, double column) {
+  return {grid.azimuth_left - column * grid.resolution, grid.elevation_top - row * grid.resolution};
+}
+
+RangeImage::RangeImage(const SphericalGrid& grid, const Eigen::Isometry3d& T_local_sensor)
+    : grid_(grid), T_local_sensor_(T_local_sensor) {
+  CheckGrid(grid);
+  const std::size_t size = static_cast<std::size_t>(grid.size());
+  ranges_.assign(size, 0.0f);
+  points_.assign(size, Eigen::Vector3f::Zero());
+  rounded_.assign(size, RoundedPixel{});
+  no_return_.assign(size, 0);
+}
+
+Pixel RangeImage::pixel(int row, int column) const {
+  const int index = Index(row, column);
+  if (rounded_[index].range > 0) return Pixel::kMeasured;
+  return no_return_[index] ? Pixel::kNoReturn : Pixel::kNeverObserved;
+}
+
+void RangeImage::SetMeasured(int row, int column, const RoundedPixel& rounded) {
+  const int index = Index(row, column);
+  constexpr double kOffsetUnit = 1.0 / PixelRounding::kOffsetSteps;
+  const Direction direction =
+      PixelDirection(grid_, row + 0.5 - rounded.offset_elevation * kOffsetUnit,
+                     column + 0.5 - rounded.offset_azimuth * kOffsetUnit);
+  const double range = rounded.range * PixelRounding::kRangeUnit;
+  rounded_[index] = rounded;
+  ranges_[index] = static_cast<float>(range);
+  points_[index] = (range * UnitVector(direction)).cast<float>();
+  no_return_[index] = 0;
+}
+
+void RangeImage::SetNoReturn(int row, int column) {
+  const int index = Index(row, column);
+  rounded_[index] = RoundedPixel{};
+  ranges_[index] = 0.0f;
+  points_[index].setZero();
+  no_return_[index] = 1;
+}
+
+void RangeImage::AddBeams(const std::vector<Direction>& directions,
+                          const std::vector<double>& ranges) {
+  // z-buffer: the nearest beam of each pixel; only those are worth computing a point for.
+  std::vector<RoundedPixel> nearest(rounded_);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const PixelPosition position = ProjectDirection(grid_, directions[i]);
+    const int row = static_cast<int>(std::floor(position.row));
+    const int column = static_cast<int>(std::floor(position.column));
+    if (!grid_.Contains(row, column)) continue;
+    RoundedPixel& pixel = nearest[Index(row, column)];
+    const std::uint16_t range = RangeSteps(ranges[i]);
+    if (pixel.range != 0 && pixel.range <= range) continue;
+    pixel = {range, OffsetSteps(position.column, column), OffsetSteps(position.row, row)};
+  }
+  for (int row = 0; row < height(); ++row) {
+    for (int column = 0; column < width(); ++column) {
+      const RoundedPixel& pixel = nearest[Index(row, column)];
+      if (pixel.range != 0) SetMeasured(row, column, pixel);
+    }
+  }
+}
+
+void RangeImage::AddNoReturn(const Direction& direction) {
+  const PixelPosition position = ProjectDirection(grid_, direction);
+  const int row = static_cast<int>(std::floor(position.row));
+  const int column = static_cast<int>(std::floor(position.column));
+  if (grid_.Contains(row, column) && !measured(row, column)) SetNoReturn(row, column);
+}
+
+int RangeImage::CountMeasured() const {
+  return static_cast<int>(
+      std::count_if(ranges_.begin(), ranges_.end(), [](float range) { return range > 0.0f; }));
+}
+
+void RangeImageParams::Validate() const {
+  if (!(resolution >= 0.001 && resolution <= 0.1)) {
+    throw std::invalid_argument("range_image resolution is " + std::to_string(resolution) +
+                                " rad, not within 0.001 .. 0.1");
+  }
+  if (!(min_range >= 0.0 && std::isfinite(min_range))) {
+    throw std::invalid_argument("range_image min_range is " + std::to_string(min_range));
+  }
+}
+
+RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params) {
+  params.Validate();
+  const Eigen::Isometry3d T_sensor_local = scan.T_local_sensor.inverse();
+
+  Bounds bounds;
+  std::vector<Direction> directions;
+  std::vector<double> ranges;
+  directions.reserve(scan.points.size());
+  ranges.reserve(scan.points.size());
+  for (const Eigen::Vector3f& p_local : scan.points) {
+    const Eigen::Vector3d p_sensor = T_sensor_local * p_local.cast<double>();
+    const double range = p_sensor.norm();
+    if (!(range >= params.min_range && range > 0.0)) continue;
+    ranges.push_back(range);
+    directions.push_back(DirectionOf(p_sensor));
+    bounds.Include(directions.back());
+  }
+  std::vector<Direction> no_returns;
+  no_returns.reserve(scan.no_return_directions.size());
+  for (const Eigen::Vector3f& beam_local : scan.no_return_directions) {
+    no_returns.push_back(DirectionOf(T_sensor_local.linear() * beam_local.cast<double>()));
+    bounds.Include(no_returns.back());
+  }
+
+  RangeImage image(GridFor(bounds, params.resolution), scan.T_local_sensor);
+  image.AddBeams(directions, ranges);
+  for (const Direction& direction : no_returns) image.AddNoReturn(direction);
+  return image;
+}
+
+}  // namespace rimod

@@ -1,0 +1,213 @@
+#include "rimod/sweep_collector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace rimod {
+namespace {
+
+// 240 MB of points: a scan beyond that is not one of a tilting laser, whatever max_lines allows.
+constexpr std::size_t kMaxPoints = 20000000;
+// A mean of unit vectors shorter than this has no direction to speak of.
+constexpr double kMinMeanForward = 0.05;
+
+double Seconds(Time duration) { return std::chrono::duration<double>(duration).count(); }
+
+// angle plus the whole turns that bring it nearest to the reference.
+double Unwrapped(double angle, double reference) {
+  return reference + std::remainder(angle - reference, 2.0 * M_PI);
+}
+
+std::string Format(const char* format, double first, double second) {
+  char text[160];
+  std::snprintf(text, sizeof(text), format, first, second);
+  return text;
+}
+
+double Degrees(double radians) { return radians * 180.0 / M_PI; }
+
+}  // namespace
+
+std::optional<Time> SweepCollector::newest() const {
+  if (lines_.empty()) return std::nullopt;
+  return lines_.back().begin;
+}
+
+void SweepCollector::AddCounters(SweepCounters* counters) const {
+  counters->idle_lines += idle_lines_;
+  counters->missing_lines += missing_lines_;
+  counters->complete_sweeps += complete_sweeps_;
+  counters->incomplete_sweeps += incomplete_sweeps_;
+}
+
+void SweepCollector::Add(const PlacedLine& line, std::vector<Sweep>* ended) {
+  if (!lines_.empty() && Seconds(line.begin - lines_.back().begin) >= params_.pause_duration) {
+    End("", ended);
+  }
+  Append(line);
+  FollowTilt(lines_.size() - 1);
+  if (HasReversed()) {
+    EndAt(extreme_ + 1, "", ended);
+  } else if (IsResting()) {
+    End("", ended);
+  } else if (lines_.size() > static_cast<std::size_t>(params_.max_lines)) {
+    End(Format("longer than %.0f lines", params_.max_lines, 0.0), ended);
+  } else if (points_.size() + no_return_directions_.size() > kMaxPoints) {
+    End(Format("longer than %.0f readings", static_cast<double>(kMaxPoints), 0.0), ended);
+  }
+}
+
+void SweepCollector::End(const std::string& incomplete_reason, std::vector<Sweep>* ended) {
+  EndAt(lines_.size(), incomplete_reason, ended);
+}
+
+void SweepCollector::Append(const PlacedLine& placed) {
+  Line line;
+  line.begin = placed.begin;
+  line.end = placed.end;
+  line.tilt_begin =
+      lines_.empty() ? placed.tilt_begin : Unwrapped(placed.tilt_begin, lines_.back().tilt_end);
+  line.tilt_end = Unwrapped(placed.tilt_end, line.tilt_begin);
+  line.missing_before = LinesMissingBefore(line);
+  line.first_point = points_.size();
+  line.first_no_return = no_return_directions_.size();
+  line.position = placed.position;
+  line.forward = placed.forward;
+  missing_lines_ += line.missing_before;
+  lines_.push_back(line);
+  points_.insert(points_.end(), placed.points.begin(), placed.points.end());
+  no_return_directions_.insert(no_return_directions_.end(), placed.no_return_directions.begin(),
+                               placed.no_return_directions.end());
+}
+
+int SweepCollector::LinesMissingBefore(const Line& line) const {
+  if (lines_.empty()) return 0;
+  constexpr double kMost = 1e6;  // keeps the number an int when line_duration is absurdly small
+  const double periods = Seconds(line.begin - lines_.back().begin) / params_.line_duration;
+  return std::max(0, static_cast<int>(std::lround(std::min(periods, kMost))) - 1);
+}
+
+void SweepCollector::FollowTilt(std::size_t index) {
+  const Line& line = lines_[index];
+  const double turned = line.tilt_end - lines_.front().tilt_begin;
+  if (direction_ == 0 && std::abs(turned) >= params_.reversal_angle) {
+    direction_ = turned > 0.0 ? 1 : -1;
+    extreme_ = index;
+  }
+  if (direction_ * (line.tilt_end - lines_[extreme_].tilt_end) > 0.0) extreme_ = index;
+  const double rest_band = params_.rest_rate * params_.pause_duration;
+  if (std::abs(line.tilt_end - lines_[rest_anchor_].tilt_end) > rest_band) rest_anchor_ = index;
+}
+
+bool SweepCollector::HasReversed() const {
+  if (direction_ == 0) return false;
+  const double returned = direction_ * (lines_[extreme_].tilt_end - lines_.back().tilt_end);
+  return returned >= params_.reversal_angle;
+}
+
+bool SweepCollector::IsResting() const {
+  const double duration = Seconds(lines_.back().begin - lines_[rest_anchor_].begin);
+  return duration >= params_.pause_duration;
+}
+
+bool SweepCollector::LineRests(const Line& line) const {
+  return std::abs(line.tilt_end - line.tilt_begin) <
+         params_.rest_rate * Seconds(line.end - line.begin);
+}
+
+void SweepCollector::EndAt(std::size_t num_lines, const std::string& incomplete_reason,
+                           std::vector<Sweep>* ended) {
+  std::size_t first = 0;
+  std::size_t last = num_lines;  // behind the last one
+  while (first < last && LineRests(lines_[first])) ++first;
+  while (last > first && LineRests(lines_[last - 1])) --last;
+  if (direction_ == 0) last = first;  // never turned to speak of
+  idle_lines_ += static_cast<std::int64_t>(num_lines - (last - first));
+  if (last > first) {
+    ended->push_back(MakeSweep(first, last, incomplete_reason));
+    ++(ended->back().complete() ? complete_sweeps_ : incomplete_sweeps_);
+  }
+  DropLines(num_lines);
+}
+
+Sweep SweepCollector::MakeSweep(std::size_t first, std::size_t last,
+                                const std::string& reason) const {
+  Sweep sweep;
+  sweep.begin = lines_[first].begin;
+  sweep.end = lines_[last - 1].end;
+  sweep.num_lines = static_cast<int>(last - first);
+  for (std::size_t i = first + 1; i < last; ++i)
+    sweep.num_missing_lines += lines_[i].missing_before;
+  const double share =
+      sweep.num_missing_lines / static_cast<double>(sweep.num_missing_lines + sweep.num_lines);
+  sweep.turned_angle = lines_[std::min(extreme_, last - 1)].tilt_end - lines_[first].tilt_begin;
+  if (!reason.empty()) {
+    sweep.incomplete_reason = reason;
+  } else if (std::abs(sweep.turned_angle) < params_.min_sweep_angle) {
+    sweep.incomplete_reason =
+        Format("turned only %.1f degrees of at least %.1f", Degrees(std::abs(sweep.turned_angle)),
+               Degrees(params_.min_sweep_angle));
+  } else if (share > params_.max_missing_share) {
+    sweep.incomplete_reason = Format("%.0f of %.0f lines are missing", sweep.num_missing_lines,
+                                     sweep.num_lines + sweep.num_missing_lines);
+  } else {
+    sweep.scan = MakeScan(first, last);
+  }
+  return sweep;
+}
+
+Scan SweepCollector::MakeScan(std::size_t first, std::size_t last) const {
+  const auto end_of = [&](std::size_t Line::*start, std::size_t all) {
+    return last < lines_.size() ? lines_[last].*start : all;
+  };
+  Scan scan;
+  scan.points.assign(points_.begin() + lines_[first].first_point,
+                     points_.begin() + end_of(&Line::first_point, points_.size()));
+  scan.no_return_directions.assign(
+      no_return_directions_.begin() + lines_[first].first_no_return,
+      no_return_directions_.begin() + end_of(&Line::first_no_return, no_return_directions_.size()));
+
+  // Means relative to the first line, so that a sensor at rest keeps its position exactly.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  Eigen::Vector3d forward = Eigen::Vector3d::Zero();
+  for (std::size_t i = first; i < last; ++i) {
+    offset += lines_[i].position - lines_[first].position;
+    forward += lines_[i].forward;
+  }
+  const double num_lines = static_cast<double>(last - first);
+  // A laser that turned all the way round has no mean direction: that of the middle line then.
+  const bool ambiguous = forward.head<2>().norm() < kMinMeanForward * num_lines;
+  if (ambiguous) forward = lines_[first + (last - first) / 2].forward;
+  Eigen::Isometry3d T_local_forward = Eigen::Isometry3d::Identity();
+  T_local_forward.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), forward).toRotationMatrix();
+  T_local_forward.translation() = lines_[first].position + offset / num_lines;
+  scan.T_local_sensor = LevelPose(T_local_forward);
+  return scan;
+}
+
+void SweepCollector::DropLines(std::size_t num_lines) {
+  if (num_lines == lines_.size()) {
+    lines_.clear();
+    points_.clear();
+    no_return_directions_.clear();
+  } else {
+    const std::size_t num_points = lines_[num_lines].first_point;
+    const std::size_t num_no_returns = lines_[num_lines].first_no_return;
+    points_.erase(points_.begin(), points_.begin() + num_points);
+    no_return_directions_.erase(no_return_directions_.begin(),
+                                no_return_directions_.begin() + num_no_returns);
+    lines_.erase(lines_.begin(), lines_.begin() + num_lines);
+    for (Line& line : lines_) {
+      line.first_point -= num_points;
+      line.first_no_return -= num_no_returns;
+    }
+  }
+  direction_ = 0;
+  extreme_ = 0;
+  rest_anchor_ = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) FollowTilt(i);
+}
+
+}  // namespace rimod
