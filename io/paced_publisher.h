@@ -47,11 +47,13 @@ class PacedPublisher {
     std::vector<std::uint8_t> bytes;
   };
   void Send();
-  bool WaitForBudget(std::unique_lock<std::mutex>* lock, double bytes);
+  std::chrono::steady_clock::time_point TakeFromBudget(double bytes);  // when it may be sent
 
   lcm::LCM* lcm_;
   double bytes_per_second_;
   double burst_bytes_;
+  double budget_;  // bytes that may be sent at budget_time_
+  std::chrono::steady_clock::time_point budget_time_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> queue_;

@@ -63,13 +63,17 @@ class SectionJoiner {
     Time when;
   };
 
-  typename std::deque<Whole>::iterator FindOrOpen(const Section& section, Time now);
-  void GiveUp(typename std::deque<Whole>::iterator whole, std::int64_t* cause, Time now);
-  bool IsLate(const Section& section, Time now);
+  bool IsLate(const Section& section) const;
+  Whole* FindOrOpen(const Section& section, Time now);
+  Whole* Oldest();
+  std::vector<Section> Complete(Whole* whole, Time now);
+  // Forgets an open whole, except for telling that further sections of it are late.
+  void GiveUp(Whole* whole, std::int64_t* cause, Time now);
+  void KeepWithinBounds(Time now);
 
   SectionJoinerParams params_;
   SectionCounters counters_;
-  std::deque<Whole> open_;     // oldest change first
+  std::vector<Whole> open_;
   std::deque<Closed> closed_;  // oldest first
 };
 

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "io/raw_subscription.h"
 #include "io/stage_timer.h"
@@ -47,14 +49,17 @@ class StatusReporter {
   status_t Snapshot() const;
 
  private:
+  // Both with the mutex held.
+  std::int64_t& Counter(const std::string& name);
+  void LogOnce(const std::string& kind, const std::string& text);
+
   mutable std::mutex mutex_;
   lcm::LCM* lcm_;
   std::string channel_;
-  status_t totals_;                               // without lists
-  std::map<std::string, std::int64_t> counters_;  // by name
-  std::map<std::string, std::deque<double>> stage_times_;
-  std::deque<std::string> stage_order_;  // as first seen
-  std::set<std::string> logged_;         // kinds
+  status_t totals_;                                                      // without lists
+  std::map<std::string, std::int64_t> counters_;                         // by name
+  std::vector<std::pair<std::string, std::deque<double>>> stage_times_;  // as first seen
+  std::set<std::string> logged_;                                         // kinds
   std::chrono::steady_clock::time_point next_publish_;
 };
 
