@@ -1,6 +1,6 @@
 #include "io/files.h"
 
-#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -117,7 +117,10 @@ FolderListing ListFolder(const std::string& folder, const std::string& prefix,
 }
 
 std::string FileStem(const std::string& path) {
-  return std::filesystem::path(path).stem().string();
+  const std::filesystem::path name = std::filesystem::path(path).filename();
+  const std::string ending = name.extension().string();
+  const bool is_number = ending.find_first_not_of("0123456789", 1) == std::string::npos;
+  return is_number ? name.string() : name.stem().string();
 }
 
 }  // namespace rimod

@@ -31,7 +31,8 @@ struct FolderListing {
 FolderListing ListFolder(const std::string& folder, const std::string& prefix,
                          const std::string& suffix);
 
-// "rooms/000.pcd" -> "000": the name without folder and last ending.
+// "rooms/000.pcd" -> "000": the name without folder and ending. A number is no ending:
+// lcm-logger calls its files "lcmlog-2011-05-01.00".
 std::string FileStem(const std::string& path);
 
 }  // namespace rimod

@@ -33,14 +33,13 @@ PointCloudFormat RecognisePointCloud(const std::string& path);
 // Reads a point cloud of any of these formats, recognised by its content. Metres; the scan's local
 // frame is the file's frame.
 // PCD: ascii, binary, binary_compressed; VIEWPOINT is the sensor's pose in the points' frame, made
-// level. PLY: ascii, binary of either byte order; a `camera` element as PCL writes it gives the
-// sensor's
-//   pose, else the sensor is the origin.
+// level.
+// PLY: ascii, binary of either byte order; a `camera` element as PCL writes it gives the sensor's
+// position, else it is the origin; its heading is along x.
 // 3DTK .3d: centimetres, left-handed (x right, y up, z forward), turned into the sensor frame (x
-//   forward, y left, z up); readings over 32 m are beams without a return, readings below 20 cm hit
-//   the scanner's carrier; both are counted. A .pose file beside it is not used: the sensor is the
-//   origin.
-// Nothing is allocated for points that the file does not hold.
+// forward, y left, z up); readings of about 3276 cm are beams without a return, readings below 20
+// cm hit the scanner's carrier; both are counted. A .pose file beside it is not used: the sensor is
+// the origin. Nothing is allocated for points that the file does not hold.
 PointCloudResult ReadPointCloud(const std::string& path);
 
 // Writes the scan's points (local frame) as binary PCD, VIEWPOINT = T_local_sensor. Beams without a
