@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/bus_params.h"
 #include "rimod/params.h"
 
 namespace rimod {
@@ -12,6 +13,7 @@ namespace rimod {
 // member here, a line a key and a line for Validate() in config_table.cpp.
 struct Configuration {
   PipelineParams pipeline;
+  BusParams bus;
 };
 
 struct ConfigurationResult {

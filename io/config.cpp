@@ -1,0 +1,273 @@
+#include "io/config.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "io/config_table.h"
+#include "io/files.h"
+#include "io/numbers.h"
+
+namespace rimod {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
+constexpr std::int64_t kMaxFileBytes = 1'000'000;
+
+// A mistake in a configuration file.
+struct Mistake {
+  int line = 0;  // from 1; 0: none in particular
+  std::string text;
+};
+
+int LineOf(const YAML::Node& node) { return node.Mark().line + 1; }
+
+std::string Place(const ConfigKey& key) {
+  return key.section.empty() ? "key '" + key.key + "'"
+                             : "section '" + key.section + "', key '" + key.key + "'";
+}
+
+std::string Shortened(const std::string& text) { return "'" + text.substr(0, 60) + "'"; }
+
+std::optional<double> FiniteNumber(const std::string& text) {
+  const std::optional<double> number = ParseNumber(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<int> WholeNumber(const std::string& text) {
+  int value = 0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result result = std::from_chars(text.data(), end, value);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
+}
+
+// Sets the key's value from the file's text. Each returns what was expected, empty when it was
+// that.
+struct Setter {
+  const std::string& text;
+
+  std::string operator()(double* value) const {
+    const std::optional<double> number = FiniteNumber(text);
+    if (number) *value = *number;
+    return number ? "" : "a number";
+  }
+  std::string operator()(const DegreesOf& value) const {
+    const std::optional<double> degrees = FiniteNumber(text);
+    if (degrees) *value.radians = *degrees * kRadiansPerDegree;
+    return degrees ? "" : "a number of degrees";
+  }
+  std::string operator()(int* value) const {
+    const std::optional<int> number = WholeNumber(text);
+    if (number) *value = *number;
+    return number ? "" : "a whole number";
+  }
+  std::string operator()(bool* value) const {
+    if (text != "true" && text != "false") return "true or false";
+    *value = text == "true";
+    return "";
+  }
+  std::string operator()(const ChoiceOf& value) const {
+    std::string names;
+    for (std::size_t i = 0; i < value.names.size(); ++i) {
+      if (text == value.names[i]) {
+        value.set(static_cast<int>(i));
+        return "";
+      }
+      names += (i == 0 ? "" : " or ") + value.names[i];
+    }
+    return names;
+  }
+};
+
+// Shortest text that reads as the same number.
+std::string NumberText(double value) {
+  char text[64];
+  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
+  return std::string(text, end.ptr);
+}
+
+// Shortest text in degrees that reads as the same radians, or the nearest where there is none.
+std::string DegreesText(double radians) {
+  const double degrees = radians / kRadiansPerDegree;
+  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    char text[64];
+    const std::to_chars_result end =
+        std::to_chars(text, text + sizeof text, degrees, std::chars_format::general, digits);
+    const std::string candidate(text, end.ptr);
+    if (ParseNumber(candidate).value_or(0.0) * kRadiansPerDegree == radians) return candidate;
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double towards : {-kInfinity, kInfinity}) {
+    const double neighbour = std::nextafter(degrees, towards);
+    if (neighbour * kRadiansPerDegree == radians) return NumberText(neighbour);
+  }
+  return NumberText(degrees);
+}
+
+struct Printer {
+  std::string operator()(const double* value) const { return NumberText(*value); }
+  std::string operator()(const DegreesOf& value) const { return DegreesText(*value.radians); }
+  std::string operator()(const int* value) const { return std::to_string(*value); }
+  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+  std::string operator()(const ChoiceOf& value) const {
+    return value.names[static_cast<std::size_t>(value.get())];
+  }
+};
+
+// Reads one file into one configuration.
+class Reader {
+ public:
+  explicit Reader(Configuration* configuration)
+      : configuration_(configuration), table_(ConfigTable(configuration)) {
+    for (ConfigKey& key : table_) {
+      keys_[{key.section, key.key}] = &key;
+      if (!key.section.empty()) sections_.insert(key.section);
+    }
+  }
+
+  std::optional<Mistake> Read(const YAML::Node& root) {
+    if (root.IsNull()) return std::nullopt;  // nothing but comments
+    if (!root.IsMap()) return Mistake{LineOf(root), "is not a list of sections"};
+    if (std::optional<Mistake> mistake = ReadMethod(root)) return mistake;
+    for (const auto& entry : root) {
+      std::optional<Mistake> mistake = ReadTopEntry(entry.first, entry.second);
+      if (mistake) return mistake;
+    }
+    return Check();
+  }
+
+ private:
+  // Before anything else, as it gives all others their base.
+  std::optional<Mistake> ReadMethod(const YAML::Node& root) {
+    for (const auto& entry : root) {
+      if (!entry.first.IsScalar() || entry.first.Scalar() != "method") continue;
+      std::optional<Mistake> mistake = ReadValue("", entry.first, entry.second);
+      if (mistake) return mistake;
+      lines_.clear();  // read again with all others
+      const Method method = configuration_->pipeline.method;
+      *configuration_ = DefaultConfiguration(method);
+      break;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Mistake> ReadTopEntry(const YAML::Node& name, const YAML::Node& value) {
+    if (!name.IsScalar()) return Mistake{LineOf(name), "a section's name is not a word"};
+    const std::string& section = name.Scalar();
+    if (sections_.count(section) == 0) return ReadValue("", name, value);
+    if (!section_lines_.emplace(section, LineOf(name)).second) {
+      return Mistake{LineOf(name), "section '" + section + "' is there twice"};
+    }
+    if (value.IsNull()) return std::nullopt;
+    if (!value.IsMap()) return Mistake{LineOf(value), "section '" + section + "' has no keys"};
+    for (const auto& entry : value) {
+      std::optional<Mistake> mistake = ReadValue(section, entry.first, entry.second);
+      if (mistake) return mistake;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Mistake> ReadValue(const std::string& section, const YAML::Node& name,
+                                   const YAML::Node& value) {
+    if (!name.IsScalar()) return Mistake{LineOf(name), "a key is not a word"};
+    const auto found = keys_.find({section, name.Scalar()});
+    if (found == keys_.end()) {
+      const std::string where = section.empty() ? "" : " in section '" + section + "'";
+      return Mistake{LineOf(name), (section.empty() ? "unknown section or key " : "unknown key ") +
+                                       Shortened(name.Scalar()) + where};
+    }
+    const ConfigKey& key = *found->second;
+    if (!lines_.emplace(std::pair(section, key.key), LineOf(name)).second) {
+      return Mistake{LineOf(name), Place(key) + " is there twice"};
+    }
+    const std::string text = value.IsScalar() ? value.Scalar() : "";
+    const std::string expected = std::visit(Setter{text}, key.value);
+    if (expected.empty() && value.IsScalar()) return std::nullopt;
+    return Mistake{LineOf(value), Place(key) + ": " + Shortened(text) + " is not " + expected};
+  }
+
+  std::optional<Mistake> Check() const {
+    for (const auto& [section, check] : SectionChecks()) {
+      try {
+        check(*configuration_);
+      } catch (const std::invalid_argument& invalid) {
+        return OutOfRange(section, invalid.what());
+      }
+    }
+    return std::nullopt;
+  }
+
+  // The complaint's first word is the struct's field: finds its key and line.
+  Mistake OutOfRange(const std::string& section, const std::string& complaint) const {
+    const std::string field = complaint.substr(0, complaint.find(' '));
+    for (const std::string& name : {field, field + "_deg"}) {
+      const auto found = keys_.find({section, name});
+      if (found == keys_.end()) continue;
+      const auto line = lines_.find({section, name});
+      const std::string unit = name == field ? "" : " (in radians)";
+      return {line == lines_.end() ? 0 : line->second,
+              Place(*found->second) + ": " + complaint + unit};
+    }
+    const auto line = section_lines_.find(section);
+    return {line == section_lines_.end() ? 0 : line->second,
+            "section '" + section + "': " + complaint};
+  }
+
+  Configuration* configuration_;
+  std::vector<ConfigKey> table_;
+  std::map<std::pair<std::string, std::string>, const ConfigKey*> keys_;
+  std::set<std::string> sections_;
+  std::map<std::pair<std::string, std::string>, int> lines_;  // of keys that were read
+  std::map<std::string, int> section_lines_;
+};
+
+}  // namespace
+
+Configuration DefaultConfiguration(Method method) {
+  Configuration configuration;
+  configuration.pipeline = DefaultParams(method);
+  return configuration;
+}
+
+ConfigurationResult ParseConfiguration(const std::string& yaml, const std::string& name) {
+  Configuration configuration = DefaultConfiguration(Method::kDefault);
+  try {
+    const std::optional<Mistake> mistake = Reader(&configuration).Read(YAML::Load(yaml));
+    if (!mistake) return {std::move(configuration), ""};
+    const std::string line = mistake->line > 0 ? ":" + std::to_string(mistake->line) : "";
+    return {std::nullopt, name + line + ": " + mistake->text};
+  } catch (const YAML::Exception& exception) {
+    return {std::nullopt, name + ":" + std::to_string(exception.mark.line + 1) +
+                              ": is not YAML: " + exception.msg};
+  }
+}
+
+ConfigurationResult ReadConfiguration(const std::string& path) {
+  const FileBytes file = ReadFile(path, kMaxFileBytes);
+  if (!file.bytes) return {std::nullopt, file.error};
+  return ParseConfiguration(*file.bytes, path);
+}
+
+std::string DumpConfiguration(const Configuration& configuration) {
+  Configuration copy = configuration;
+  std::string text;
+  std::string section;
+  for (const ConfigKey& key : ConfigTable(&copy)) {
+    if (key.section != section) text += "\n" + key.section + ":\n";
+    section = key.section;
+    const std::string indent = section.empty() ? "" : "  ";
+    constexpr std::size_t kCommentColumn = 40;
+    std::string line = indent + key.key + ": " + std::visit(Printer(), key.value);
+    line.resize(std::max(line.size() + 1, kCommentColumn), ' ');
+    text += line + "# " + key.comment + "\n";
+  }
+  return text;
+}
+
+}  // namespace rimod
