@@ -15,7 +15,7 @@ struct MeshResult {
   std::int64_t dropped_triangles = 0;  // left out: no area, or a corner that is not finite
 };
 
-// Reads STL, OBJ or PLY (whatever Assimp recognises of these), all its parts joined, node
+// Reads .stl, .obj or .ply through Assimp, all its parts joined, node
 // transforms applied, polygons cut into triangles. Units are taken as metres. Every triangle of the
 // result has an area and finite corners; there is at least one.
 MeshResult ReadMesh(const std::string& path);

@@ -128,7 +128,7 @@ PointCloudResult ReadPointCloud(const std::string& path) {
     case PointCloudFormat::kUnknown:
       break;
   }
-  return BadPointCloud(path, "is not a point cloud (PCD, PLY or 3DTK .3d)");
+  return BadPointCloud(path, "is neither a point cloud (PCD, PLY, 3DTK .3d) nor an LCM log");
 }
 
 std::string WritePcd(const std::string& path, const Scan& scan) {
