@@ -34,6 +34,12 @@ cv::Point ClosestPoint(const cv::Rect& rect, const cv::Point& point) {
           std::clamp(point.y, rect.y, rect.br().y - 1)};
 }
 
+// The corner nearest to the given one from which the size fits into the area, if it does at all.
+cv::Point ShiftedInto(const cv::Rect& area, const cv::Point& corner, const cv::Size& size) {
+  return {std::max(area.x, std::min(corner.x, area.br().x - size.width)),
+          std::max(area.y, std::min(corner.y, area.br().y - size.height))};
+}
+
 }  // namespace
 
 cv::Size TextSize(const std::string& text) {
@@ -72,7 +78,7 @@ std::optional<cv::Rect> LabelPlacer::Place(const cv::Rect& target, const cv::Siz
   const int reach = std::max(area_.width, area_.height);
   for (int distance = 3; distance < reach; distance += 8) {
     for (const cv::Point& corner : CornersAround(anchor, size, distance)) {
-      const cv::Rect place(corner, size);
+      const cv::Rect place(ShiftedInto(area_, corner, size), size);
       if (!IsFree(place)) continue;
       // A label may move by its own height to uncover what it would hide.
       const long long cost = CoveredArea(place) + static_cast<long long>(distance) * size.width / 2;

@@ -24,7 +24,7 @@ Colour ObjectColour(int index) {
       {255, 200, 0},    // sky blue
       {70, 70, 255},    // red
       {255, 110, 110},  // periwinkle
-      {180, 255, 200},  // mint
+      {100, 150, 0},    // teal
   }};
   const std::array<unsigned char, 3>& colour =
       kColours[static_cast<std::size_t>(index) % kNumObjectColours];
@@ -43,7 +43,10 @@ std::vector<Colour> ColoursByName(const std::vector<std::string>& names) {
 }
 
 Colour RangeColour(double share) {
-  return Between(Colour(228, 224, 218), Colour(72, 50, 40), share);
+  const Colour near(214, 232, 240);
+  const Colour middle(160, 140, 100);
+  const Colour far(64, 36, 22);
+  return share < 0.5 ? Between(near, middle, 2.0 * share) : Between(middle, far, 2.0 * share - 1.0);
 }
 
 Colour HeightColour(double share) {

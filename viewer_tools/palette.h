@@ -18,7 +18,8 @@ Colour ObjectColour(int index);
 // One colour a name: the index of the name among the sorted different names.
 std::vector<Colour> ColoursByName(const std::vector<std::string>& names);
 
-// Grey-blue, light when near (share 0), dark when far (share 1); shares outside are clamped.
+// From a light cream when near (share 0) over grey-blue to dark blue when far (share 1); shares
+// outside are clamped.
 Colour RangeColour(double share);
 
 // Grey, from dark on the floor (share 0) to light at the top (share 1); clamped.

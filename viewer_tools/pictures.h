@@ -61,7 +61,7 @@ struct TopViewLayout {
             area.y + (max_x - p_local.x()) * pixels_per_metre};
   }
 };
-// Shows the sensor, the objects and all but the outermost points.
+// Shows the sensor, the objects and the nearest nine tenths of the points.
 TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects);
 
 // The image's points from above, low ones dark and high ones light, without those above 2 m over

@@ -33,9 +33,9 @@ RangeSpan FindSpan(const RangeImage& image) {
       if (image.measured(row, column)) ranges.push_back(image.range(row, column));
   if (ranges.empty()) return {};
   std::sort(ranges.begin(), ranges.end());
-  // Without the outermost hundredth, which single readings make.
+  // Single near readings and the view out of windows must not take the colours of the room.
   const double near = ranges[ranges.size() / 100];
-  const double far = ranges[ranges.size() - 1 - ranges.size() / 100];
+  const double far = ranges[ranges.size() - 1 - ranges.size() / 10];
   return {near, std::max(far, near * 1.1)};
 }
 
@@ -236,7 +236,7 @@ void DrawLegend(const RangeSpan& span, const RangeImageLayout& layout, cv::Mat* 
   char near[32];
   char far[32];
   std::snprintf(near, sizeof(near), "%.1f m", span.near);
-  std::snprintf(far, sizeof(far), "%.1f m", span.far);
+  std::snprintf(far, sizeof(far), "%.1f m and farther", span.far);
   DrawText(canvas, near, {kBorder, y - 2}, kTextColour);
   int x = kBorder + TextSize(near).width + 2;
   x = DrawSwatch(canvas, x, y, kBarWidth, far,

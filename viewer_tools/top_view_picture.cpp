@@ -55,17 +55,18 @@ struct Extent {
 };
 
 Extent FindExtent(const RangeImage& image, const std::vector<DrawnObject>& objects) {
-  constexpr double kOuterShare = 0.005;  // of the points at each side may fall outside
+  constexpr double kNearShare = 0.9;  // the view out of windows must not make the room small
   Extent extent;
-  extent.Add(image.T_local_sensor().translation().head<2>());
+  const Eigen::Vector3d sensor = image.T_local_sensor().translation();
+  extent.Add(sensor.head<2>());
   const std::vector<Eigen::Vector3d> points = LocalPoints(image);
   if (!points.empty()) {
-    for (int axis = 0; axis < 2; ++axis) {
-      std::vector<double> values;
-      for (const Eigen::Vector3d& p : points) values.push_back(p[axis]);
-      extent.min[axis] = std::min(extent.min[axis], Quantile(values, kOuterShare));
-      extent.max[axis] = std::max(extent.max[axis], Quantile(values, 1.0 - kOuterShare));
-    }
+    std::vector<double> distances;
+    distances.reserve(points.size());
+    for (const Eigen::Vector3d& p : points) distances.push_back((p - sensor).norm());
+    const double shown_distance = Quantile(distances, kNearShare);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (distances[i] <= shown_distance) extent.Add(points[i].head<2>());
   }
   for (const DrawnObject& object : objects)
     for (const Eigen::Vector3d& corner : BoxCorners(object.detection)) extent.Add(corner.head<2>());
@@ -166,7 +167,7 @@ cv::Rect DrawSensor(const RangeImage& image, const TopViewLayout& layout, cv::Ma
 }  // namespace
 
 TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects) {
-  constexpr double kMargin = 0.4;        // m round what is shown
+  constexpr double kMargin = 0.5;        // m round what is shown
   constexpr double kMaxSide = 960.0;     // canvas pixels
   constexpr double kMinWidth = 520.0;    // canvas pixels: room for the title and labels
   constexpr double kMinHeight = 240.0;   // canvas pixels
