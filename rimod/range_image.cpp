@@ -55,14 +55,12 @@ SphericalGrid GridFor(const Bounds& bounds, double resolution) {
   SphericalGrid grid;
   grid.resolution = resolution;
   if (bounds.empty()) return grid;
-  const double left = std::floor(bounds.azimuth_max / resolution) + 1.0;
-  const double right = std::floor(bounds.azimuth_min / resolution);
-  const double top = std::floor(bounds.elevation_max / resolution) + 1.0;
-  const double bottom = std::floor(bounds.elevation_min / resolution);
-  grid.azimuth_left = left * resolution;
-  grid.elevation_top = top * resolution;
-  grid.width = static_cast<int>(left - right);
-  grid.height = static_cast<int>(top - bottom);
+  grid.azimuth_left = (std::floor(bounds.azimuth_max / resolution) + 1.0) * resolution;
+  grid.elevation_top = (std::floor(bounds.elevation_max / resolution) + 1.0) * resolution;
+  // By projecting the last beam, so that one exactly on a pixel's edge falls into the grid too.
+  const PixelPosition last = ProjectDirection(grid, {bounds.azimuth_min, bounds.elevation_min});
+  grid.width = static_cast<int>(std::floor(last.column)) + 1;
+  grid.height = static_cast<int>(std::floor(last.row)) + 1;
   return grid;
 }
 
