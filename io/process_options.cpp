@@ -35,6 +35,14 @@ void AddBusOptions(CLI::App* app, BusOptions* options) {
       ->allow_extra_args(false);
 }
 
+void AddThreadsOption(CLI::App* app, int* num_threads) {
+  app->add_option(
+         "--threads", *num_threads,
+         "Threads that compute; 0: as many as the machine has. Results do not depend on it")
+      ->check(CLI::Range(0, 256))
+      ->type_name("N");
+}
+
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv) {
   constexpr int kBadUsage = 2;
   try {

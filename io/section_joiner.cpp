@@ -7,6 +7,12 @@
 
 namespace rimod {
 
+SectionJoinerParams JoinerParamsFrom(const BusParams& bus) {
+  SectionJoinerParams params;
+  params.patience = std::chrono::milliseconds(static_cast<int>(1e3 * bus.join_patience));
+  return params;
+}
+
 template <typename Section>
 SectionJoiner<Section>::SectionJoiner(const SectionJoinerParams& params) : params_(params) {}
 

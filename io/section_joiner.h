@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/bus_params.h"
+
 namespace rimod {
 
 struct SectionJoinerParams {
@@ -18,6 +20,9 @@ struct SectionJoinerParams {
       5000};                              // a whole without a new section for so long is given up
   std::chrono::milliseconds memory{500};  // sections that repeat one completed so recently are late
 };
+
+// The default with the patience of the configuration.
+SectionJoinerParams JoinerParamsFrom(const BusParams& bus);
 
 // What happened to sections, by cause. Counts only grow.
 struct SectionCounters {

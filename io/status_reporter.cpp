@@ -69,6 +69,7 @@ void StatusReporter::CountOut() {
 
 void StatusReporter::CountDropped(const std::string& cause, std::int64_t number) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (number == 0) return;
   totals_.num_dropped += number;
   Counter(cause) += number;
 }
@@ -84,10 +85,17 @@ void StatusReporter::CountRejected(const std::string& channel, const std::string
 void StatusReporter::SetCounter(const std::string& name, std::int64_t value,
                                 bool counts_as_dropped) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::int64_t& counter = Counter(name);
-  const std::int64_t growth = std::max<std::int64_t>(0, value - counter);
-  counter += growth;
+  const std::int64_t growth = Raise(name, value);
   if (counts_as_dropped) totals_.num_dropped += growth;
+}
+
+void StatusReporter::SetSectionCounters(const std::string& name, const SectionCounters& counters) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  totals_.num_dropped += Raise(name + " incomplete", counters.incomplete);
+  totals_.num_dropped += Raise(name + " conflicting", counters.conflicting);
+  totals_.num_rejected += Raise(name + " sections with bad numbers", counters.bad_numbers);
+  Raise(name + " sections duplicated", counters.duplicated);
+  Raise(name + " sections late", counters.late);
 }
 
 void StatusReporter::AddStageTimes(const StageTimes& times) {
@@ -159,6 +167,13 @@ std::int64_t& StatusReporter::Counter(const std::string& name) {
   if (known != counters_.end()) return known->second;
   if (counters_.size() >= kMaxNames) return counters_["other"];
   return counters_[Trimmed(name)];
+}
+
+std::int64_t StatusReporter::Raise(const std::string& name, std::int64_t value) {
+  std::int64_t& counter = Counter(name);
+  const std::int64_t growth = std::max<std::int64_t>(0, value - counter);
+  counter += growth;
+  return growth;
 }
 
 void StatusReporter::LogOnce(const std::string& kind, const std::string& text) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/raw_subscription.h"
+#include "io/section_joiner.h"
 #include "io/stage_timer.h"
 #include "rimod/status_t.hpp"
 
@@ -35,6 +36,9 @@ class StatusReporter {
   // A named number of one's own; must not fall. Its growth counts as dropped when
   // counts_as_dropped.
   void SetCounter(const std::string& name, std::int64_t value, bool counts_as_dropped = false);
+  // What a joiner saw: counters "<name> sections duplicated" and so on; wholes that were given up
+  // count as dropped, sections with bad numbers as rejected.
+  void SetSectionCounters(const std::string& name, const SectionCounters& counters);
   // The stages of one scan; the status has each stage's median over the last scans.
   void AddStageTimes(const StageTimes& times);
   // Logs an error, each kind once, and keeps it as the last.
@@ -49,8 +53,10 @@ class StatusReporter {
   status_t Snapshot() const;
 
  private:
-  // Both with the mutex held.
+  // With the mutex held:
   std::int64_t& Counter(const std::string& name);
+  // Sets a counter; returns by how much it grew.
+  std::int64_t Raise(const std::string& name, std::int64_t value);
   void LogOnce(const std::string& kind, const std::string& text);
 
   mutable std::mutex mutex_;

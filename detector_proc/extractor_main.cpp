@@ -1,0 +1,31 @@
+#include <CLI/CLI.hpp>
+
+#include "detector_proc/extractor_process.h"
+#include "io/bus.h"
+#include "io/bus_setup.h"
+#include "io/process_options.h"
+
+int main(int argc, char** argv) {
+  const rimod::StopOnSignal signals;
+  CLI::App app(
+      "Describes 3D scans: computes their range images and the features in them.\n"
+      "Reads rimod.scan_t on RIMOD_SCAN; sends rimod.range_image_t on RIMOD_RANGE_IMAGE,\n"
+      "rimod.feature_set_t on RIMOD_FEATURES and rimod.status_t on RIMOD_STATUS once a second.\n"
+      "Scans that come faster than they can be described overtake each other: the newest counts.",
+      "rimod-extractor");
+  rimod::CommonOptions common;
+  rimod::BusOptions bus;
+  int num_threads = 0;
+  rimod::AddCommonOptions(&app, &common);
+  rimod::AddBusOptions(&app, &bus);
+  rimod::AddThreadsOption(&app, &num_threads);
+  if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
+  rimod::LogToStderr(app.get_name());
+
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  if (!result.setup) return result.exit_code;
+  lcm::LCM* const lcm = result.setup->lcm.get();
+  rimod::ExtractorProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
+                                  num_threads);
+  return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
+}

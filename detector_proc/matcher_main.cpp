@@ -1,0 +1,48 @@
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <utility>
+
+#include "detector_proc/matcher_process.h"
+#include "io/bus.h"
+#include "io/bus_setup.h"
+#include "io/model_file.h"
+#include "io/process_options.h"
+
+int main(int argc, char** argv) {
+  const rimod::StopOnSignal signals;
+  CLI::App app(
+      "Finds known objects in described 3D scans.\n"
+      "Reads rimod.range_image_t on RIMOD_RANGE_IMAGE, rimod.feature_set_t on RIMOD_FEATURES and\n"
+      "further models, rimod.object_model_t, on RIMOD_MODEL; sends rimod.detections_t on\n"
+      "RIMOD_DETECTIONS, rimod.pose_hypotheses_t on RIMOD_HYPOTHESES and rimod.status_t on\n"
+      "RIMOD_STATUS once a second. Of scans that come too fast the newest counts.",
+      "rimod-matcher");
+  rimod::CommonOptions common;
+  rimod::BusOptions bus;
+  std::string models;
+  int num_threads = 0;
+  rimod::AddCommonOptions(&app, &common);
+  rimod::AddBusOptions(&app, &bus);
+  rimod::AddThreadsOption(&app, &num_threads);
+  app.add_option("--models", models,
+                 "Load every *.rimod file of this folder; without it models come on RIMOD_MODEL")
+      ->type_name("DIR");
+  if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
+  rimod::LogToStderr(app.get_name());
+
+  rimod::ModelFolder folder;
+  if (!models.empty()) folder = rimod::LoadModelFolder(models);
+  for (const std::string& error : folder.bad_files) spdlog::error("{}", error);
+  if (!folder.error.empty()) {
+    spdlog::error("{}", folder.error);
+    return 1;
+  }
+  if (folder.models.empty()) spdlog::warn("no models yet: waiting for some on the model channel");
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  if (!result.setup) return result.exit_code;
+  lcm::LCM* const lcm = result.setup->lcm.get();
+  rimod::MatcherProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
+                                num_threads, std::move(folder.models));
+  return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
+}

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <atomic>
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/channels.h"
+#include "io/config.h"
+#include "io/newest_worker.h"
+#include "io/paced_publisher.h"
+#include "io/partner_joiner.h"
+#include "io/raw_subscription.h"
+#include "io/section_joiner.h"
+#include "io/status_reporter.h"
+#include "io/thread_pool.h"
+#include "rimod/detector.h"
+#include "rimod/feature_set_t.hpp"
+#include "rimod/object_model_t.hpp"
+#include "rimod/range_image_t.hpp"
+
+namespace rimod {
+
+// Range images and features in, pose hypotheses and detections of known objects out. Models come at
+// the start and, while running, over the bus; a model takes the place of another of its name.
+class MatcherProcess {
+ public:
+  // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
+  // 0 for as many as the machine has.
+  MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
+                 const Configuration& configuration, int num_threads,
+                 std::vector<ObjectModel> models);
+  // Breaks off the computation at hand.
+  ~MatcherProcess();
+
+  // To be called many times a second: reports.
+  void OnIdle();
+
+ private:
+  std::string OnRangeImage(range_image_t section);
+  std::string OnFeatures(feature_set_t section);
+  std::string OnModel(object_model_t section);
+  void Give(std::optional<DescribedScan> scan);
+
+  // In the worker's thread:
+  void RebuildDatabase();
+  void Work(const DescribedScan& scan);
+  void Publish(const DescribedScan& scan, const DetectionResult& result, const StageTimes& times);
+
+  const Channels channels_;
+  const PipelineParams params_;
+  std::atomic<bool> stop_{false};
+  ThreadPool pool_;
+  SectionJoiner<range_image_t> image_joiner_;
+  SectionJoiner<feature_set_t> feature_joiner_;
+  SectionJoiner<object_model_t> model_joiner_;
+  PartnerJoiner partners_;
+  StatusReporter status_;
+  PacedPublisher publisher_;
+
+  std::mutex new_models_mutex_;
+  std::map<std::string, ObjectModel> new_models_;  // by name; not in the database yet
+
+  // Of the worker's thread:
+  std::map<std::string, ObjectModel> models_;  // by name
+  std::optional<ModelDatabase> database_;
+
+  std::unique_ptr<NewestWorker<DescribedScan>> worker_;
+  std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
+};
+
+}  // namespace rimod

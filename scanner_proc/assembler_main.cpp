@@ -1,0 +1,28 @@
+#include <CLI/CLI.hpp>
+
+#include "io/bus.h"
+#include "io/bus_setup.h"
+#include "io/process_options.h"
+#include "scanner_proc/assembler_process.h"
+
+int main(int argc, char** argv) {
+  const rimod::StopOnSignal signals;
+  CLI::App app(
+      "Joins the lines of a tilting 2D laser into 3D scans.\n"
+      "Reads bot_core.planar_lidar_t on LASER (one line each) and bot_core.rigid_transform_t on\n"
+      "LASER_TO_LOCAL (where the laser is); sends rimod.scan_t on RIMOD_SCAN at the end of each "
+      "sweep\nof the tilt, and rimod.status_t on RIMOD_STATUS once a second.",
+      "rimod-assembler");
+  rimod::CommonOptions common;
+  rimod::BusOptions bus;
+  rimod::AddCommonOptions(&app, &common);
+  rimod::AddBusOptions(&app, &bus);
+  if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
+  rimod::LogToStderr(app.get_name());
+
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  if (!result.setup) return result.exit_code;
+  lcm::LCM* const lcm = result.setup->lcm.get();
+  rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration);
+  return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
+}

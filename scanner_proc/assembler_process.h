@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bot_core/planar_lidar_t.hpp"
+#include "bot_core/rigid_transform_t.hpp"
+#include "io/channels.h"
+#include "io/config.h"
+#include "io/paced_publisher.h"
+#include "io/raw_subscription.h"
+#include "io/status_reporter.h"
+#include "rimod/sweep_assembler.h"
+
+namespace rimod {
+
+// Laser lines and poses in, a scan out at the end of each sweep.
+class AssemblerProcess {
+ public:
+  // Both LCM instances (they may be one) must outlive the process.
+  AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
+                   const Configuration& configuration);
+
+  // To be called many times a second: ends a sweep when nothing comes any more, reports.
+  void OnIdle();
+
+ private:
+  std::string OnLine(const bot_core::planar_lidar_t& message);
+  std::string OnPose(const bot_core::rigid_transform_t& message);
+  void Publish(const std::vector<Sweep>& sweeps);
+  void ReportCounters();
+
+  using Clock = std::chrono::steady_clock;
+
+  const std::string scan_channel_;
+  const std::chrono::duration<double> idle_time_;
+  SweepAssembler assembler_;
+  Clock::duration assembly_time_{0};  // spent on the sweep at hand
+  Clock::time_point last_input_;
+  StatusReporter status_;
+  PacedPublisher publisher_;
+  std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
+};
+
+}  // namespace rimod
