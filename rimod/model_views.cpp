@@ -44,6 +44,53 @@ SphericalGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_ob
   return grid;
 }
 
+// Up to count different indices below size, spread evenly by steps of the golden ratio.
+std::vector<std::size_t> SpreadIndices(std::size_t size, int count) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const std::size_t wanted = std::min(size, static_cast<std::size_t>(count));
+  std::vector<char> taken(size, 0);
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; indices.size() < wanted; ++i) {
+    const double phase = kGoldenRatio * static_cast<double>(i + 1);
+    std::size_t k =
+        static_cast<std::size_t>((phase - std::floor(phase)) * static_cast<double>(size));
+    while (taken[k]) k = (k + 1) % size;
+    taken[k] = 1;
+    indices.push_back(k);
+  }
+  return indices;
+}
+
+// Points beside the silhouette (sensor frame): pixels exactly gap away from the model along a row
+// or column, at the range of the nearest pixel of the model there.
+std::vector<Eigen::Vector3d> OutsidePoints(const RenderedModel& rendered, const SphericalGrid& grid,
+                                           int gap) {
+  const auto range_at = [&](int row, int column) {
+    const bool inside = row >= 0 && row < rendered.height && column >= 0 && column < rendered.width;
+    return inside ? rendered.range(row, column) : 0.0f;
+  };
+  std::vector<Eigen::Vector3d> points;
+  for (int row = -gap; row < rendered.height + gap; ++row) {
+    for (int column = -gap; column < rendered.width + gap; ++column) {
+      float nearest = 0.0f;
+      bool too_near = false;
+      for (int d = 0; d <= gap && !too_near; ++d) {
+        for (const float range : {range_at(row - d, column), range_at(row + d, column),
+                                  range_at(row, column - d), range_at(row, column + d)}) {
+          if (range <= 0.0f) continue;
+          if (d < gap) too_near = true;
+          if (nearest == 0.0f || range < nearest) nearest = range;
+        }
+      }
+      if (too_near || nearest == 0.0f) continue;
+      const Direction direction = PixelDirection(grid, rendered.first_row + row + 0.5,
+                                                 rendered.first_column + column + 0.5);
+      points.push_back(nearest * UnitVector(direction));
+    }
+  }
+  return points;
+}
+
 }  // namespace
 
 void ModelViewParams::Validate() const {
@@ -53,12 +100,15 @@ void ModelViewParams::Validate() const {
   CheckWithin("model_views max_elevation", max_elevation, min_elevation, 1.4);
   CheckWithin("model_views distance", distance, 0.1, 100.0);
   CheckWithin("model_views validation_points", validation_points, 1, 10000);
+  CheckWithin("model_views outside_points", outside_points, 0, 10000);
+  CheckWithin("model_views outside_gap", outside_gap, 0.005, 0.5);
 }
 
 std::string ModelViewParams::Kind() const {
   std::ostringstream kind;
   kind << "views " << azimuths << " x " << elevations << ' ' << min_elevation << ' '
-       << max_elevation << " at " << distance << ' ' << validation_points;
+       << max_elevation << " at " << distance << ' ' << validation_points << ' ' << outside_points
+       << ' ' << outside_gap;
   return kind.str();
 }
 
@@ -98,26 +148,29 @@ RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint
   return image;
 }
 
-std::vector<Eigen::Vector3f> SampleValidationPoints(const RangeImage& image, int count) {
-  std::vector<Eigen::Vector3f> measured;
-  for (int row = 0; row < image.height(); ++row)
-    for (int column = 0; column < image.width(); ++column)
-      if (image.measured(row, column)) measured.push_back(image.point(row, column));
-  // Steps of the golden ratio through the pixels in reading order spread any number of them evenly.
-  constexpr double kGoldenRatio = 0.6180339887498949;
-  const std::size_t size = measured.size();
-  std::vector<char> taken(size, 0);
-  std::vector<Eigen::Vector3f> points;
-  const std::size_t wanted = std::min(size, static_cast<std::size_t>(count));
-  for (std::size_t i = 0; points.size() < wanted; ++i) {
-    const double phase = kGoldenRatio * static_cast<double>(i + 1);
-    std::size_t k =
-        static_cast<std::size_t>((phase - std::floor(phase)) * static_cast<double>(size));
-    while (taken[k]) k = (k + 1) % size;
-    taken[k] = 1;
-    points.push_back((image.T_local_sensor() * measured[k].cast<double>()).cast<float>());
+void SampleViewPoints(const ObjectModel& model, double resolution, const ModelViewParams& params,
+                      ModelView* view) {
+  const Eigen::Isometry3d T_object_sensor = ViewPose(model, view->viewpoint);
+  const SphericalGrid grid = GridAround(model, T_object_sensor, resolution);
+  const RenderedModel rendered = RenderModel(model, T_object_sensor.inverse(), grid);
+
+  std::vector<int> seen;
+  for (std::size_t i = 0; i < rendered.points.size(); ++i)
+    if (rendered.points[i] >= 0) seen.push_back(rendered.points[i]);
+  view->validation_points.clear();
+  view->validation_normals.clear();
+  for (const std::size_t k : SpreadIndices(seen.size(), params.validation_points)) {
+    view->validation_points.push_back(model.points[seen[k]]);
+    view->validation_normals.push_back(model.normals[seen[k]]);
   }
-  return points;
+
+  const double distance = (CentreOf(model) - view->viewpoint).norm();
+  const int gap =
+      std::max(1, static_cast<int>(std::lround(params.outside_gap / (distance * resolution))));
+  const std::vector<Eigen::Vector3d> outside = OutsidePoints(rendered, grid, gap);
+  view->outside_points.clear();
+  for (const std::size_t k : SpreadIndices(outside.size(), params.outside_points))
+    view->outside_points.push_back((T_object_sensor * outside[k]).cast<float>());
 }
 
 }  // namespace rimod

@@ -29,7 +29,9 @@ std::vector<Eigen::Vector3d> Viewpoints(const ObjectModel& model, const ModelVie
 RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
                       double resolution);
 
-// Up to count points of the image, spread evenly over the measured pixels, in its local frame.
-std::vector<Eigen::Vector3f> SampleValidationPoints(const RangeImage& image, int count);
+// Sets the view's validation points (spread evenly over the visible surface) with their normals and
+// its outside points, up to params.validation_points and params.outside_points.
+void SampleViewPoints(const ObjectModel& model, double resolution, const ModelViewParams& params,
+                      ModelView* view);
 
 }  // namespace rimod

@@ -17,7 +17,11 @@ bool AllFinite(const std::vector<Eigen::Vector3f>& list) {
 
 void ValidateView(const ModelView& view, int descriptor_size) {
   Require(view.viewpoint.allFinite(), "a viewpoint is not finite");
-  Require(AllFinite(view.validation_points), "a validation point is not finite");
+  Require(AllFinite(view.validation_points) && AllFinite(view.validation_normals) &&
+              AllFinite(view.outside_points),
+          "a validation or outside point is not finite");
+  Require(view.validation_points.size() == view.validation_normals.size(),
+          "validation points and normals differ in number");
   for (const Feature& feature : view.features) {
     Require(feature.position.allFinite() && feature.normal.allFinite(),
             "a feature's position or normal is not finite");

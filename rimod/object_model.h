@@ -13,6 +13,10 @@ struct ModelView {
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  // m, object frame
   std::vector<Feature> features;                        // object frame
   std::vector<Eigen::Vector3f> validation_points;       // m, object frame
+  std::vector<Eigen::Vector3f> validation_normals;  // unit, object frame, one a validation point
+  // m, object frame: just beside the silhouette, at the depth of its edge. Where the object stands
+  // the scene does not go on there.
+  std::vector<Eigen::Vector3f> outside_points;
 };
 
 // Everything known of an object. Object frame: origin at the middle of the bounding box's bottom, z

@@ -20,7 +20,7 @@ struct PointList {
   }
 };
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointList>,
-                                                 PointList, 3>;
+                                                 PointList, 3, std::size_t>;
 
 }  // namespace
 
