@@ -249,6 +249,7 @@ ConfigurationResult ParseConfiguration(const std::string& yaml, const std::strin
 }
 
 ConfigurationResult ReadConfiguration(const std::string& path) {
+  if (path.empty()) return {DefaultConfiguration(Method::kDefault), ""};
   const FileBytes file = ReadFile(path, kMaxFileBytes);
   if (!file.bytes) return {std::nullopt, file.error};
   return ParseConfiguration(*file.bytes, path);

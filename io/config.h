@@ -26,6 +26,7 @@ Configuration DefaultConfiguration(Method method);
 
 // Reads YAML: a top-level `method` (paper or default) chooses the base, sections override single
 // keys. An unknown section or key, a value of the wrong type or out of range is an error.
+// An empty path gives the built-in values.
 ConfigurationResult ReadConfiguration(const std::string& path);
 
 // The same from text; name stands for the file in error texts.
