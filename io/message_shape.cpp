@@ -134,9 +134,10 @@ void WalkShape<object_model_t>(ShapeCursor* cursor) {
   cursor->SkipString();
   cursor->Skip(kInt32 + kDouble);
   SkipArrays(cursor, 6, cursor->Count(), kFloat);
-  cursor->SkipArray(cursor->Count(), 3 * kDouble + 2 * kInt32);
+  cursor->SkipArray(cursor->Count(), 3 * kDouble + 3 * kInt32);
   SkipArrays(cursor, 6, cursor->Count(), kFloat);
   cursor->SkipArray(cursor->Count(), kInt16);
+  SkipArrays(cursor, 6, cursor->Count(), kFloat);
   SkipArrays(cursor, 3, cursor->Count(), kFloat);
 }
 

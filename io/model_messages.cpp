@@ -14,8 +14,8 @@ constexpr std::size_t kFixedBytes = 400;  // of an encoded section, without its 
 constexpr std::size_t kMaxSourceBytes = 1000;
 
 constexpr std::size_t kPointBytes = 6 * sizeof(float);  // with normal
-constexpr std::size_t kViewBytes = 3 * sizeof(double) + 2 * sizeof(std::int32_t);
-constexpr std::size_t kValidationPointBytes = 3 * sizeof(float);
+constexpr std::size_t kViewBytes = 3 * sizeof(double) + 3 * sizeof(std::int32_t);
+constexpr std::size_t kOutsidePointBytes = 3 * sizeof(float);
 
 void Require(bool condition, const std::string& complaint) {
   if (!condition) throw std::invalid_argument("object model: " + complaint);
@@ -48,6 +48,7 @@ class SectionWriter {
     for (int i = 0; i < 3; ++i) message.viewpoint[i] = view.viewpoint[i];
     message.num_features = static_cast<std::int32_t>(view.features.size());
     message.num_validation_points = static_cast<std::int32_t>(view.validation_points.size());
+    message.num_outside_points = static_cast<std::int32_t>(view.outside_points.size());
     RoomFor(kViewBytes).views.push_back(message);
   }
 
@@ -61,9 +62,16 @@ class SectionWriter {
                           feature.descriptor.end());
   }
 
-  void AddValidationPoint(const Eigen::Vector3f& point) {
-    object_model_t& section = RoomFor(kValidationPointBytes);
+  void AddValidationPoint(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) {
+    object_model_t& section = RoomFor(kPointBytes);
     Append(point, &section.validation_x, &section.validation_y, &section.validation_z);
+    Append(normal, &section.validation_normal_x, &section.validation_normal_y,
+           &section.validation_normal_z);
+  }
+
+  void AddOutsidePoint(const Eigen::Vector3f& point) {
+    object_model_t& section = RoomFor(kOutsidePointBytes);
+    Append(point, &section.outside_x, &section.outside_y, &section.outside_z);
   }
 
   // The sections with their numbers and counts set.
@@ -77,6 +85,7 @@ class SectionWriter {
       section.num_features = static_cast<std::int32_t>(section.feature_x.size());
       section.num_values = static_cast<std::int32_t>(section.values.size());
       section.num_validation_points = static_cast<std::int32_t>(section.validation_x.size());
+      section.num_outside_points = static_cast<std::int32_t>(section.outside_x.size());
     }
     return std::move(sections_);
   }
@@ -129,7 +138,10 @@ bool CountsFit(const object_model_t& s) {
          fits(s.num_values, {s.values.size()}) &&
          static_cast<std::int64_t>(s.num_features) * s.descriptor_size == s.num_values &&
          fits(s.num_validation_points,
-              {s.validation_x.size(), s.validation_y.size(), s.validation_z.size()});
+              {s.validation_x.size(), s.validation_y.size(), s.validation_z.size(),
+               s.validation_normal_x.size(), s.validation_normal_y.size(),
+               s.validation_normal_z.size()}) &&
+         fits(s.num_outside_points, {s.outside_x.size(), s.outside_y.size(), s.outside_z.size()});
 }
 
 // The sections 0 .. n - 1 in order. Returns an error text.
@@ -163,6 +175,8 @@ struct JoinedLists {
   std::vector<model_view_t> views;
   std::vector<Feature> features;
   std::vector<Eigen::Vector3f> validation_points;
+  std::vector<Eigen::Vector3f> validation_normals;
+  std::vector<Eigen::Vector3f> outside_points;
 };
 
 void AppendSection(const object_model_t& s, ObjectModel* model, JoinedLists* lists) {
@@ -182,34 +196,44 @@ void AppendSection(const object_model_t& s, ObjectModel* model, JoinedLists* lis
   }
   for (std::size_t i = 0; i < s.validation_x.size(); ++i) {
     lists->validation_points.emplace_back(s.validation_x[i], s.validation_y[i], s.validation_z[i]);
+    lists->validation_normals.emplace_back(s.validation_normal_x[i], s.validation_normal_y[i],
+                                           s.validation_normal_z[i]);
   }
+  for (std::size_t i = 0; i < s.outside_x.size(); ++i)
+    lists->outside_points.emplace_back(s.outside_x[i], s.outside_y[i], s.outside_z[i]);
 }
 
-// Hands the features and validation points out to their views. Returns an error text.
-std::string FillViews(JoinedLists lists, ObjectModel* model) {
-  std::size_t next_feature = 0;
-  std::size_t next_point = 0;
+// The next count entries of a list, or false when it has fewer left.
+template <typename T>
+bool TakeNext(const std::vector<T>& list, std::int32_t count, std::size_t* next,
+              std::vector<T>* taken) {
+  if (count < 0 || static_cast<std::size_t>(count) > list.size() - *next) return false;
+  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(*next);
+  taken->assign(begin, begin + count);
+  *next += static_cast<std::size_t>(count);
+  return true;
+}
+
+// Hands the features and points out to their views. Returns an error text.
+std::string FillViews(const JoinedLists& lists, ObjectModel* model) {
+  std::size_t next_feature = 0, next_point = 0, next_normal = 0, next_outside = 0;
   for (const model_view_t& message : lists.views) {
-    const auto num_features = static_cast<std::size_t>(std::max(message.num_features, 0));
-    const auto num_points = static_cast<std::size_t>(std::max(message.num_validation_points, 0));
-    if (message.num_features < 0 || message.num_validation_points < 0 ||
-        num_features > lists.features.size() - next_feature ||
-        num_points > lists.validation_points.size() - next_point) {
-      return "a view counts features or validation points that are not there";
-    }
     ModelView view;
     view.viewpoint = Eigen::Vector3d(message.viewpoint);
-    for (std::size_t i = 0; i < num_features; ++i) {
-      view.features.push_back(std::move(lists.features[next_feature++]));
+    const std::int32_t num_points = message.num_validation_points;
+    if (!TakeNext(lists.features, message.num_features, &next_feature, &view.features) ||
+        !TakeNext(lists.validation_points, num_points, &next_point, &view.validation_points) ||
+        !TakeNext(lists.validation_normals, num_points, &next_normal, &view.validation_normals) ||
+        !TakeNext(lists.outside_points, message.num_outside_points, &next_outside,
+                  &view.outside_points)) {
+      return "a view counts features or points that are not there";
     }
-    const auto begin = lists.validation_points.begin() + static_cast<std::ptrdiff_t>(next_point);
-    view.validation_points.assign(begin, begin + static_cast<std::ptrdiff_t>(num_points));
-    next_point += num_points;
     model->views.push_back(std::move(view));
   }
-  const bool all_used =
-      next_feature == lists.features.size() && next_point == lists.validation_points.size();
-  return all_used ? "" : "features or validation points that belong to no view";
+  const bool all_used = next_feature == lists.features.size() &&
+                        next_point == lists.validation_points.size() &&
+                        next_outside == lists.outside_points.size();
+  return all_used ? "" : "features or points that belong to no view";
 }
 
 }  // namespace
@@ -230,7 +254,11 @@ std::vector<object_model_t> ToSections(const ObjectModel& model, std::int64_t ut
     for (const Feature& feature : view.features) writer.AddFeature(feature);
   }
   for (const ModelView& view : model.views) {
-    for (const Eigen::Vector3f& point : view.validation_points) writer.AddValidationPoint(point);
+    for (std::size_t i = 0; i < view.validation_points.size(); ++i)
+      writer.AddValidationPoint(view.validation_points[i], view.validation_normals[i]);
+  }
+  for (const ModelView& view : model.views) {
+    for (const Eigen::Vector3f& point : view.outside_points) writer.AddOutsidePoint(point);
   }
   return writer.Finish();
 }
@@ -259,7 +287,7 @@ JoinedModel JoinModelSections(const std::vector<object_model_t>& sections) {
     if (!CountsFit(*section)) return {std::nullopt, "a count does not fit its list"};
     AppendSection(*section, &model, &lists);
   }
-  error = FillViews(std::move(lists), &model);
+  error = FillViews(lists, &model);
   if (!error.empty()) return {std::nullopt, std::move(error)};
   try {
     ValidateModel(model);

@@ -23,7 +23,7 @@ ModelView ComputeView(const ObjectModel& model, const Eigen::Vector3d& viewpoint
   view.viewpoint = viewpoint;
   view.features = ExtractFeatures(image, params, Execution{}).features;
   for (Feature& feature : view.features) MoveToObjectFrame(image.T_local_sensor(), &feature);
-  view.validation_points = SampleValidationPoints(image, params.model_views.validation_points);
+  SampleViewPoints(model, params.range_image.resolution, params.model_views, &view);
   return view;
 }
 

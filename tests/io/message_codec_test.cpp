@@ -76,11 +76,28 @@ object_model_t Sample() {
   message.descriptor = "kind";
   message.descriptor_size = 2;
   message.num_points = message.num_features = message.num_validation_points = 2;
-  for (auto* list :
-       {&message.x, &message.y, &message.z, &message.normal_x, &message.normal_y, &message.normal_z,
-        &message.feature_x, &message.feature_y, &message.feature_z, &message.feature_normal_x,
-        &message.feature_normal_y, &message.feature_normal_z, &message.validation_x,
-        &message.validation_y, &message.validation_z}) {
+  message.num_outside_points = 2;
+  for (auto* list : {&message.x,
+                     &message.y,
+                     &message.z,
+                     &message.normal_x,
+                     &message.normal_y,
+                     &message.normal_z,
+                     &message.feature_x,
+                     &message.feature_y,
+                     &message.feature_z,
+                     &message.feature_normal_x,
+                     &message.feature_normal_y,
+                     &message.feature_normal_z,
+                     &message.validation_x,
+                     &message.validation_y,
+                     &message.validation_z,
+                     &message.validation_normal_x,
+                     &message.validation_normal_y,
+                     &message.validation_normal_z,
+                     &message.outside_x,
+                     &message.outside_y,
+                     &message.outside_z}) {
     *list = {1.0f, 2.0f};
   }
   message.views.resize(2);
