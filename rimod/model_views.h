@@ -17,6 +17,8 @@ struct ModelViewParams {
   double max_elevation = 0.79;  // rad, of the highest ring; >= min_elevation
   double distance = 2.5;        // m, from the object's centre, at least 1.5 diameters; > 0
   int validation_points = 100;  // n of the paper, a view; 1 .. 10000
+  int outside_points = 40;      // beside the silhouette, a view; 0 .. 10000
+  double outside_gap = 0.04;    // m, from the silhouette to its outside points; 0.005 .. 0.5
   void Validate() const;
   std::string Kind() const;  // all of it in words: equal when the views are
 };
