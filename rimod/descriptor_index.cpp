@@ -48,7 +48,10 @@ DescriptorIndex::DescriptorIndex(const std::vector<const Descriptor*>& descripto
       order_(descriptors.size()) {
   values_.reserve(descriptors.size() * size_);
   for (const Descriptor* descriptor : descriptors)
-    for (const std::int16_t value : *descriptor) values_.push_back(ToMetres(value));
+    for (const std::int16_t value : *descriptor) {
+      values_.push_back(ToMetres(value));
+      filled_.push_back(value == kEmptyCell ? 0.0f : 1.0f);
+    }
   std::iota(order_.begin(), order_.end(), 0);
   if (!order_.empty()) Build(0, size());
 }
@@ -89,12 +92,39 @@ int DescriptorIndex::Build(int first, int last) {
   return id;
 }
 
+double DescriptorIndex::DistanceSq(const std::vector<float>& query, int descriptor) const {
+  const float* const values = &values_[static_cast<std::size_t>(descriptor) * size_];
+  float sum_sq = 0.0f;
+  for (int d = 0; d < size_; ++d) sum_sq += (query[d] - values[d]) * (query[d] - values[d]);
+  return static_cast<double>(sum_sq) / size_;
+}
+
+double DescriptorIndex::SharedDistanceSq(const std::vector<float>& query,
+                                         const std::vector<float>& query_filled, int descriptor,
+                                         int min_shared) const {
+  const float* const values = &values_[static_cast<std::size_t>(descriptor) * size_];
+  const float* const filled = &filled_[static_cast<std::size_t>(descriptor) * size_];
+  float sum_sq = 0.0f, shared = 0.0f;
+  for (int d = 0; d < size_; ++d) {
+    const float both = query_filled[d] * filled[d];
+    const float difference = query[d] - values[d];
+    sum_sq += both * difference * difference;
+    shared += both;
+  }
+  if (shared < static_cast<float>(min_shared)) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(sum_sq / shared);
+}
+
 std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, int max_matches,
-                                                       double max_distance, int max_checks) const {
+                                                       double max_distance, int max_checks,
+                                                       int min_shared) const {
   std::vector<DescriptorMatch> found;
   if (nodes_.empty() || max_matches < 1 || static_cast<int>(query.size()) != size_) return found;
   std::vector<float> q(query.size());
   std::transform(query.begin(), query.end(), q.begin(), ToMetres);
+  std::vector<float> filled(query.size());
+  std::transform(query.begin(), query.end(), filled.begin(),
+                 [](std::int16_t value) { return value == kEmptyCell ? 0.0f : 1.0f; });
   const double max_sq = max_distance * max_distance * size_;
 
   std::priority_queue<Branch> branches;
@@ -113,13 +143,11 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
       node = near;
     }
     for (int i = nodes_[node].first; i < nodes_[node].last; ++i) {
-      double sum_sq = 0.0;
-      for (int d = 0; d < size_; ++d) {
-        const double difference = static_cast<double>(q[d]) - Value(order_[i], d);
-        sum_sq += difference * difference;
-      }
       ++checks;
-      if (sum_sq <= max_sq) found.push_back({order_[i], std::sqrt(sum_sq / size_)});
+      const double distance_sq = min_shared > 0
+                                     ? SharedDistanceSq(q, filled, order_[i], min_shared)
+                                     : DistanceSq(q, order_[i]);
+      if (distance_sq * size_ <= max_sq) found.push_back({order_[i], std::sqrt(distance_sq)});
     }
   }
   std::sort(found.begin(), found.end(), Nearer);

@@ -27,9 +27,11 @@ class DescriptorIndex {
 
   // The nearest of the descriptors that were looked at, at most max_matches within max_distance,
   // nearest first, ties by index. Looks at max_checks descriptors at least when there are as many;
-  // as many checks as descriptors make the search exact.
+  // as many checks as descriptors make the search exact. With min_shared > 0 the distance is
+  // DescriptorDistance's, over the cells that both have; the tree is searched as before.
   std::vector<DescriptorMatch> FindNear(const Descriptor& query, int max_matches,
-                                        double max_distance, int max_checks) const;
+                                        double max_distance, int max_checks,
+                                        int min_shared = 0) const;
 
   int size() const { return static_cast<int>(order_.size()); }
 
@@ -41,12 +43,17 @@ class DescriptorIndex {
     int first = 0, last = 0;  // leaf: range in order_
   };
   int Build(int first, int last);
+  // Mean squared difference over all cells, or over those that both have; m^2.
+  double DistanceSq(const std::vector<float>& query, int descriptor) const;
+  double SharedDistanceSq(const std::vector<float>& query, const std::vector<float>& query_filled,
+                          int descriptor, int min_shared) const;
   float Value(int descriptor, int dimension) const {
     return values_[static_cast<std::size_t>(descriptor) * size_ + dimension];
   }
 
   int size_ = 0;               // values a descriptor
   std::vector<float> values_;  // m, descriptor by descriptor
+  std::vector<float> filled_;  // likewise, 1 where the cell is not empty, else 0
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };

@@ -34,6 +34,20 @@ std::vector<Eigen::Vector3d> LowResolution(const ObjectModel& model, double cell
   return points;
 }
 
+// For a pixel exactly gap pixels outside the silhouette the range of the model's pixel next to it,
+// else 0.
+float RangeAtGap(const RenderedModel& rendered, int row, int column, int gap) {
+  float range = 0.0f;
+  for (int r = std::max(row - gap, 0); r <= std::min(row + gap, rendered.height - 1); ++r) {
+    for (int c = std::max(column - gap, 0); c <= std::min(column + gap, rendered.width - 1); ++c) {
+      if (rendered.point(r, c) < 0) continue;
+      if (std::max(std::abs(r - row), std::abs(c - column)) < gap) return 0.0f;
+      range = std::max(range, rendered.range(r, c));
+    }
+  }
+  return range;
+}
+
 }  // namespace
 
 bool BetterCandidate(const Candidate& a, const Candidate& b) {
@@ -121,6 +135,38 @@ void ValidationParams::Validate() const {
   scoring.Validate();
   CheckWithin("validation min_score", min_score, 0.0, 1.0);
   CheckWithin("validation min_pixels", min_pixels, 1, 1'000'000);
+  CheckWithin("validation outside_weight", outside_weight, 0.0, 10.0);
+  CheckWithin("validation outside_gap", outside_gap, 1, 10);
+  CheckWithin("validation outside_depth", outside_depth, 1e-3, 10.0);
+  CheckWithin("validation ground_height", ground_height, 0.0, 10.0);
+}
+
+SilhouetteSurroundings LookAround(const RangeImage& image, const RenderedModel& rendered,
+                                  const Eigen::Isometry3d& T_sensor_object,
+                                  const ValidationParams& params) {
+  const int gap = params.outside_gap;
+  const Eigen::Isometry3d T_object_sensor = T_sensor_object.inverse();
+  SilhouetteSurroundings around;
+  for (int row = -gap; row < rendered.height + gap; ++row) {
+    for (int column = -gap; column < rendered.width + gap; ++column) {
+      const float range = RangeAtGap(rendered, row, column, gap);
+      if (range <= 0.0f) continue;
+      const int image_row = rendered.first_row + row, image_column = rendered.first_column + column;
+      if (!image.grid().Contains(image_row, image_column)) continue;
+      const Pixel kind = image.pixel(image_row, image_column);
+      if (kind == Pixel::kNeverObserved) continue;
+      const double behind = image.range(image_row, image_column) - range;
+      const bool jump = kind == Pixel::kNoReturn || behind > params.outside_depth;
+      if (!jump && behind < -params.outside_depth) continue;  // hidden by something nearer
+      if (!jump) {
+        const Eigen::Vector3d p_sensor = image.point(image_row, image_column).cast<double>();
+        if ((T_object_sensor * p_sensor).z() < params.ground_height) continue;
+        ++around.continued;
+      }
+      ++around.compared;
+    }
+  }
+  return around;
 }
 
 double ValidatePose(const RangeImage& image, const ObjectModel& model,
@@ -138,7 +184,14 @@ double ValidatePose(const RangeImage& image, const ObjectModel& model,
       ++count;
     }
   }
-  return count < params.min_pixels ? 0.0 : std::max(0.0, sum) / count;
+  if (count < params.min_pixels) return 0.0;
+  double score = sum / count;
+  if (params.outside_weight > 0.0) {
+    const SilhouetteSurroundings around = LookAround(image, rendered, T_sensor_object, params);
+    if (around.compared > 0)
+      score -= params.outside_weight * around.continued / around.compared;
+  }
+  return std::max(0.0, score);
 }
 
 }  // namespace rimod

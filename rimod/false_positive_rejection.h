@@ -7,6 +7,7 @@
 #include "rimod/point_tree.h"
 #include "rimod/range_image.h"
 #include "rimod/scoring.h"
+#include "rimod/surface_rendering.h"
 
 namespace rimod {
 
@@ -66,8 +67,25 @@ struct ValidationParams {
   ScoringParams scoring;   // for the pixel-by-pixel comparison
   double min_score = 0.4;  // candidates below are false positives; 0 .. 1
   int min_pixels = 20;     // of the model in the image, fewer say nothing; >= 1
+  // Weight of the share of the pixels along the outside of the model's silhouette where the scene
+  // goes on at the model's depth, as it does where a model lies in a larger surface; subtracted
+  // from the score; 0 .. 10, 0 = not looked at.
+  double outside_weight = 0.0;
+  int outside_gap = 2;  // pixels between the silhouette and those compared; 1 .. 10
+  double outside_depth = 0.1;  // m, the scene goes on when its depth differs by less; > 0
+  double ground_height =
+      0.05;  // m, lower points beside an object are what it stands on and not compared; 0 .. 10
   void Validate() const;
 };
+
+// What lies along the outside of a rendered silhouette.
+struct SilhouetteSurroundings {
+  int compared = 0;   // pixels
+  int continued = 0;  // of these: the scene goes on at the model's depth
+};
+SilhouetteSurroundings LookAround(const RangeImage& image, const RenderedModel& rendered,
+                                  const Eigen::Isometry3d& T_sensor_object,
+                                  const ValidationParams& params);
 
 // Score of a candidate by comparing the image with the model rendered at its pose, pixel by pixel;
 // 0 when fewer than min_pixels of the model would be seen.

@@ -17,13 +17,36 @@ struct Pair {
   Eigen::Vector3d scene_normal, model_normal;
 };
 
-// Early rejection of two correspondences: too near to each other, or their distance in the scene
-// differs from that in the model.
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+}
+
+// Whether the normals stand to each other and to the line that joins the points in the scene as
+// they do in the model.
+bool NormalsAgree(const Pair& a, const Pair& b, double tolerance) {
+  const Eigen::Vector3d scene_line = (b.scene - a.scene).normalized();
+  const Eigen::Vector3d model_line = (b.model - a.model).normalized();
+  const auto differ = [tolerance](double in_scene, double in_model) {
+    return std::abs(in_scene - in_model) > tolerance;
+  };
+  return !differ(AngleBetween(a.scene_normal, scene_line),
+                 AngleBetween(a.model_normal, model_line)) &&
+         !differ(AngleBetween(b.scene_normal, scene_line),
+                 AngleBetween(b.model_normal, model_line)) &&
+         !differ(AngleBetween(a.scene_normal, b.scene_normal),
+                 AngleBetween(a.model_normal, b.model_normal));
+}
+
+// Early rejection of two correspondences: too near to each other, or they lie to each other in the
+// scene otherwise than in the model.
 bool Compatible(const Pair& a, const Pair& b, const GoodsacParams& params) {
-  const double in_scene = (a.scene - b.scene).norm();
-  const double in_model = (a.model - b.model).norm();
-  return std::min(in_scene, in_model) >= params.min_separation &&
-         std::abs(in_scene - in_model) <= params.distance_tolerance;
+  constexpr double kAnyAngle = 3.14;  // rad
+  const Eigen::Vector3d scene_step = b.scene - a.scene, model_step = b.model - a.model;
+  if (std::abs(scene_step.z() - model_step.z()) > params.height_tolerance) return false;
+  const double in_scene = scene_step.norm(), in_model = model_step.norm();
+  if (std::min(in_scene, in_model) < params.min_separation) return false;
+  if (std::abs(in_scene - in_model) > params.distance_tolerance) return false;
+  return params.angle_tolerance > kAnyAngle || NormalsAgree(a, b, params.angle_tolerance);
 }
 
 bool Collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
@@ -47,22 +70,37 @@ std::optional<Eigen::Isometry3d> PoseOf(const std::array<const Pair*, 3>& triple
   return T_sensor_object;
 }
 
+bool BetterCorrespondence(const Correspondence& a, const Correspondence& b) {
+  if (a.distance != b.distance) return a.distance < b.distance;
+  if (a.scene_feature != b.scene_feature) return a.scene_feature < b.scene_feature;
+  return a.model_feature < b.model_feature;
+}
+
+// The best n correspondences (C' of the paper).
 std::vector<Pair> BestPairs(std::vector<Correspondence> correspondences,
                             const std::vector<Feature>& scene_features,
-                            const std::vector<const Feature*>& model_features, int max_count) {
-  std::sort(correspondences.begin(), correspondences.end(),
-            [](const Correspondence& a, const Correspondence& b) {
-              if (a.distance != b.distance) return a.distance < b.distance;
-              if (a.scene_feature != b.scene_feature) return a.scene_feature < b.scene_feature;
-              return a.model_feature < b.model_feature;
-            });
-  if (static_cast<int>(correspondences.size()) > max_count) correspondences.resize(max_count);
+                            const std::vector<const Feature*>& model_features,
+                            const GoodsacParams& params) {
+  std::sort(correspondences.begin(), correspondences.end(), BetterCorrespondence);
+  const double spacing_sq = params.min_model_spacing * params.min_model_spacing;
+  std::vector<std::vector<Eigen::Vector3d>> places(scene_features.size());  // of those kept
   std::vector<Pair> pairs;
   for (const Correspondence& correspondence : correspondences) {
+    if (static_cast<int>(pairs.size()) >= params.max_correspondences) break;
     const Feature& scene = scene_features[correspondence.scene_feature];
     const Feature& model = *model_features[correspondence.model_feature];
-    pairs.push_back({scene.position.cast<double>(), model.position.cast<double>(),
-                     scene.normal.cast<double>(), model.normal.cast<double>()});
+    const Eigen::Vector3d place = model.position.cast<double>();
+    std::vector<Eigen::Vector3d>& taken = places[correspondence.scene_feature];
+    if (params.max_matches_a_feature > 0 &&
+        static_cast<int>(taken.size()) >= params.max_matches_a_feature)
+      continue;
+    if (std::any_of(taken.begin(), taken.end(), [&](const Eigen::Vector3d& other) {
+          return (other - place).squaredNorm() < spacing_sq;
+        }))
+      continue;
+    taken.push_back(place);
+    pairs.push_back({scene.position.cast<double>(), place, scene.normal.cast<double>(),
+                     model.normal.cast<double>()});
   }
   return pairs;
 }
@@ -72,6 +110,8 @@ std::vector<Pair> BestPairs(std::vector<Correspondence> correspondences,
 void GoodsacParams::Validate() const {
   constexpr double kPi = 3.14159265358979323846;
   CheckWithin("goodsac max_correspondences", max_correspondences, 3, 100'000);
+  CheckWithin("goodsac min_model_spacing", min_model_spacing, 0.0, 10.0);
+  CheckWithin("goodsac max_matches_a_feature", max_matches_a_feature, 0, 100'000);
   CheckWithin("goodsac max_trials", max_trials, 1, 100'000'000);
   CheckWithin("goodsac max_triples", max_triples, 1, 2'000'000'000);
   CheckWithin("goodsac min_separation", min_separation, 0.0, 10.0);
@@ -79,6 +119,9 @@ void GoodsacParams::Validate() const {
   CheckWithin("goodsac min_triangle_height", min_triangle_height, 0.0, 10.0);
   CheckWithin("goodsac min_normal_cosine", min_normal_cosine, -1.0, 1.0);
   CheckWithin("goodsac max_tilt", max_tilt, 0.0, kPi);
+  CheckWithin("goodsac angle_tolerance", angle_tolerance, 0.0, kPi);
+  CheckWithin("goodsac height_tolerance", height_tolerance, 1e-4, 1000.0);
+  CheckWithin("goodsac max_poses_a_correspondence", max_poses_a_correspondence, 0, 100'000'000);
 }
 
 void VisitTriples(int count, const std::function<bool(int, int, int)>& visit) {
@@ -93,23 +136,37 @@ std::vector<Eigen::Isometry3d> CandidatePoses(std::vector<Correspondence> corres
                                               const std::vector<const Feature*>& model_features,
                                               const GoodsacParams& params) {
   params.Validate();
-  const std::vector<Pair> pairs = BestPairs(std::move(correspondences), scene_features,
-                                            model_features, params.max_correspondences);
+  const std::vector<Pair> pairs =
+      BestPairs(std::move(correspondences), scene_features, model_features, params);
   const int count = static_cast<int>(pairs.size());
-  std::vector<char> compatible(static_cast<std::size_t>(count) * count, 0);
-  for (int a = 0; a < count; ++a)
-    for (int b = 0; b < a; ++b) compatible[a * count + b] = Compatible(pairs[a], pairs[b], params);
-
+  const int limit = params.max_poses_a_correspondence > 0 ? params.max_poses_a_correspondence
+                                                          : params.max_trials;
   std::vector<Eigen::Isometry3d> poses;
+  std::vector<std::vector<int>> partners(pairs.size());  // compatible and better, best first
+  std::vector<char> fits(pairs.size(), 0);
   int triples = 0;
-  VisitTriples(count, [&](int i, int j, int k) {
-    if (compatible[j * count + i] && compatible[k * count + i] && compatible[k * count + j]) {
-      const std::optional<Eigen::Isometry3d> pose =
-          PoseOf({&pairs[i], &pairs[j], &pairs[k]}, params);
-      if (pose) poses.push_back(*pose);
+  for (int k = 0; k < count; ++k) {
+    std::fill(fits.begin(), fits.end(), 0);
+    for (int j = 0; j < k; ++j) {
+      if (!Compatible(pairs[j], pairs[k], params)) continue;
+      partners[k].push_back(j);
+      fits[j] = 1;
     }
-    return ++triples < params.max_triples && static_cast<int>(poses.size()) < params.max_trials;
-  });
+    int found = 0;
+    for (const int j : partners[k]) {
+      for (const int i : partners[j]) {
+        if (found >= limit) break;
+        if (!fits[i]) continue;
+        if (++triples > params.max_triples) return poses;
+        const std::optional<Eigen::Isometry3d> pose =
+            PoseOf({&pairs[i], &pairs[j], &pairs[k]}, params);
+        if (!pose) continue;
+        poses.push_back(*pose);
+        ++found;
+        if (static_cast<int>(poses.size()) >= params.max_trials) return poses;
+      }
+    }
+  }
   return poses;
 }
 

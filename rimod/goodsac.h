@@ -11,6 +11,10 @@ namespace rimod {
 
 struct GoodsacParams {
   int max_correspondences = 200;     // n of the paper: the best ones that triples are made of; >= 3
+  // m, of a scene feature's correspondences only the best is kept of those whose model features lie
+  // nearer to each other than this: one place seen in several views counts once; 0 = all are kept
+  double min_model_spacing = 0.0;
+  int max_matches_a_feature = 0;  // best correspondences kept of a scene feature; 0 = all of them
   int max_trials = 20000;            // transformations computed for a model; >= 1
   int max_triples = 1500000;        // triples looked at, most of them rejected early; >= 1
   double min_separation = 0.1;       // m, between the features of a triple; >= 0
@@ -19,6 +23,14 @@ struct GoodsacParams {
   double min_normal_cosine =
       0.8;  // normals after the transformation against the scene's; -1 .. 1, -1 = not tested
   double max_tilt = 0.35;  // rad, of the object's z-axis from the vertical; pi = not tested
+  // rad, between two features' normals and between each normal and the line that joins the two:
+  // an angle in the scene against the model's; 0 .. pi, pi = not tested
+  double angle_tolerance = 3.14159265358979;
+  // m, how much higher one feature of a pair is than the other, in the scene against the model's:
+  // objects stand upright; > 0, large = not tested
+  double height_tolerance = 1000.0;
+  int max_poses_a_correspondence =
+      0;  // that have it as their worst member, more are not looked for; 0 = no limit
   void Validate() const;
 };
 

@@ -19,6 +19,12 @@ struct MatchingParams {
   double max_descriptor_distance = 0.03;  // m, root mean square a cell; d_max of the paper; > 0
   int max_matches = 60;                   // nearest model features kept for one of the scene; >= 1
   int max_checks = 800;                   // model features looked at for one of the scene; >= 1
+  // Cells that two descriptors must share: the matches found are compared anew over the cells that
+  // both have. 0 .. 256, 0 = empty cells count as lying at the mean.
+  int min_shared_cells = 0;
+  // m, distances count relative to how rough (standard deviation) the scene's patch is, but at
+  // least this: flat patches, which are everywhere, come last. 0 = distances as they are.
+  double min_roughness = 0.0;
   void Validate() const;
 };
 

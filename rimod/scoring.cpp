@@ -63,10 +63,15 @@ double ScorePose(const RangeImage& image, const ObjectModel& model,
                  const Eigen::Isometry3d& T_sensor_object, const ScoringParams& params) {
   const int view = NearestView(model, T_sensor_object);
   if (view < 0 || model.views[view].validation_points.empty()) return 0.0;
-  double sum = 0.0;
-  for (const Eigen::Vector3f& p_object : model.views[view].validation_points)
-    sum += PointScoreInImage(image, T_sensor_object * p_object.cast<double>(), params);
   const double n = static_cast<double>(model.views[view].validation_points.size());
+  double sum = 0.0, most = n;  // most: the sum if all points to come fit perfectly
+  for (const Eigen::Vector3f& p_object : model.views[view].validation_points) {
+    const double score =
+        PointScoreInImage(image, T_sensor_object * p_object.cast<double>(), params);
+    sum += score;
+    most += score - 1.0;
+    if (most < params.gamma * n) return 0.0;
+  }
   return std::max(0.0, sum) / n;  // eq. 2
 }
 

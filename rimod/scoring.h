@@ -31,7 +31,7 @@ double PointScoreInImage(const RangeImage& image, const Eigen::Vector3d& p_senso
 int NearestView(const ObjectModel& model, const Eigen::Isometry3d& T_sensor_object);
 
 // Eq. 2: the score of a pose by the validation points of the nearest view, 0 .. 1; 0 for a model
-// without views or a view without points.
+// without views or a view without points, and as soon as gamma cannot be reached any more.
 double ScorePose(const RangeImage& image, const ObjectModel& model,
                  const Eigen::Isometry3d& T_sensor_object, const ScoringParams& params);
 
