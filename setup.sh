@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
   # compiler and build
-  g++ make cmake ninja-build pkg-config git
+  g++ make cmake pkg-config git
   # libraries
   libeigen3-dev libnanoflann-dev libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libembree-dev libassimp-dev libcli11-dev libspdlog-dev libyaml-cpp-dev nlohmann-json3-dev

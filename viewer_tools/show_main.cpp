@@ -1,28 +1,9 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <lcm/lcm-cpp.hpp>
 
-#include "io/bus.h"
 #include "io/process_options.h"
 #include "viewer_tools/show_process.h"
-
-namespace {
-
-int ShowLive(const rimod::BusOptions& bus, const rimod::Channels& channels,
-             const rimod::ShowLimits& limits) {
-  const rimod::StopOnSignal signal;
-  const std::unique_ptr<lcm::LCM> lcm = rimod::OpenLcm(rimod::LcmUrl(bus));
-  if (!lcm) return 1;
-  rimod::ShowProcess process(lcm.get(), channels, limits);
-  std::atomic<bool> stop{false};
-  const bool stopped =
-      rimod::RunBus(lcm.get(), stop, [&] { stop = signal.stop() || process.Done(); });
-  if (process.GaveUp()) spdlog::error("no detections on {}", channels.detections);
-  return stopped && !process.GaveUp() ? 0 : 1;
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -39,12 +20,17 @@ int main(int argc, char** argv) {
   app.add_option("source", source, "A log, or the word live")->required()->type_name("LOG|live");
   app.add_option("--count", limits.max_scans, "live: stop after so many scans")
       ->check(CLI::Range(1, 1000000000));
+  std::vector<std::string> awaited;
+  app.add_option("--await", awaited, "live: stop when this process has told its status; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("PROCESS");
   CLI::Option* patience =
-      app.add_option("--timeout", timeout, "live: fail when no scan came for so many seconds")
+      app.add_option("--timeout", timeout, "live: fail when nothing came for so many seconds")
           ->check(CLI::Range(0.1, 1e6));
   if (const std::optional<int> exit_code = rimod::ParseCommandLine(&app, argc, argv))
     return *exit_code;
   rimod::LogToStderr(app.get_name());
+  limits.awaited.insert(awaited.begin(), awaited.end());
   if (!patience->empty()) limits.patience = std::chrono::duration<double>(timeout);
 
   const rimod::ChannelsResult channels = rimod::ChannelsFrom(bus);
@@ -52,6 +38,6 @@ int main(int argc, char** argv) {
     spdlog::error(channels.error);
     return 2;
   }
-  return source == "live" ? ShowLive(bus, *channels.channels, limits)
+  return source == "live" ? rimod::ShowLive(rimod::LcmUrl(bus), *channels.channels, limits)
                           : rimod::ShowLog(source, *channels.channels);
 }

@@ -2,10 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstdio>
 
+#include "io/bus.h"
 #include "io/detection_messages.h"
 #include "io/files.h"
+#include "io/process_options.h"
 #include "viewer_tools/detection_table.h"
 #include "viewer_tools/recorded_scans.h"
 
@@ -50,7 +54,12 @@ bool ShowProcess::GaveUp() const {
 }
 
 bool ShowProcess::Done() const {
-  return (limits_.max_scans > 0 && num_scans_ >= limits_.max_scans) || GaveUp();
+  const auto was_heard = [this](const std::string& process) {
+    return process_times_.count(process) > 0;
+  };
+  const bool all_heard = !limits_.awaited.empty() &&
+                         std::all_of(limits_.awaited.begin(), limits_.awaited.end(), was_heard);
+  return all_heard || (limits_.max_scans > 0 && num_scans_ >= limits_.max_scans) || GaveUp();
 }
 
 std::string ShowProcess::OnDetections(const detections_t& message) {
@@ -75,6 +84,20 @@ std::string ShowProcess::OnStatus(const status_t& message) {
   for (const stage_time_t& stage : message.stage_times) times.emplace_back(stage.stage, stage.ms);
   process_times_[message.process] = std::move(times);
   return "";
+}
+
+int ShowLive(const std::string& lcm_url, const Channels& channels, const ShowLimits& limits) {
+  const StopOnSignal signal;
+  const std::unique_ptr<lcm::LCM> lcm = OpenLcm(lcm_url);
+  if (!lcm) return 1;
+  ShowProcess process(lcm.get(), channels, limits);
+  std::atomic<bool> stop{false};
+  const auto on_idle = [&] { stop = signal.stop() || process.Done(); };
+  if (!RunBus(lcm.get(), stop, on_idle)) return 1;
+  if (!process.GaveUp()) return 0;
+  spdlog::error("gave up: no scan on {}, or not every process on {}", channels.detections,
+                channels.status);
+  return 1;
 }
 
 int ShowLog(const std::string& path, const Channels& channels) {

@@ -18,8 +18,9 @@ namespace rimod {
 
 // When live tables end.
 struct ShowLimits {
-  int max_scans = 0;                                      // stop after so many; 0: never
-  std::optional<std::chrono::duration<double>> patience;  // give up when no scan came for so long
+  std::set<std::string> awaited;  // stop when all these processes have told their status
+  int max_scans = 0;              // stop after so many; 0: never
+  std::optional<std::chrono::duration<double>> patience;  // give up when neither came for so long
 };
 
 // Prints a table for each detections message on the bus, with the stage times that the processes
@@ -44,6 +45,10 @@ class ShowProcess {
   std::set<std::string> told_;  // complaints, each once
   std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
 };
+
+// Joins the bus and prints tables until the limits are reached or a signal comes. Returns the exit
+// code: 1 when the bus cannot be joined or patience ran out.
+int ShowLive(const std::string& lcm_url, const Channels& channels, const ShowLimits& limits);
 
 // Prints the same tables for every scan in a log. Returns the exit code: 1 when something could not
 // be read.

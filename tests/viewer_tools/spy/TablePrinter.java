@@ -14,7 +14,7 @@ import lcm.spy.SpyPlugin;
 
 /**
  * A plugin through which a test sees what lcm-spy shows: prints the channel table twice a second, a
- * line "ROW channel type" each. Where SPY_SCREENSHOT names a file it also draws the window into it.
+ * line "ROW channel type undecodable" each. Where SPY_SCREENSHOT names a file it also draws the window into it.
  */
 public class TablePrinter implements SpyPlugin {
   public TablePrinter() {
@@ -49,8 +49,10 @@ public class TablePrinter implements SpyPlugin {
       JTable table = findTable(frame);
       if (table == null) continue;
       TableModel model = table.getModel();
+      int undecodable = model.getColumnCount() - 1;
       for (int row = 0; row < model.getRowCount(); ++row)
-        System.out.println("ROW " + model.getValueAt(row, 0) + " " + model.getValueAt(row, 1));
+        System.out.println("ROW " + model.getValueAt(row, 0) + " " + model.getValueAt(row, 1) + " "
+            + model.getValueAt(row, undecodable));
       draw(frame);
     }
     System.out.flush();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Starts rimod-spy on a screen of its own (Xvfb) and a live network of its own (unshare), publishes on
-# every channel, and checks that lcm-spy names the type of each. Exit code 77: cannot run here.
+# every channel, and checks that lcm-spy names the type of each and decodes all. Exit code 77: cannot run here.
 #   spy_test.sh RIMOD_SPY PUBLISHER PLUGIN_JAR
 set -u
 spy=$1 publisher=$2 plugin=$3
@@ -34,15 +34,15 @@ pids+=($!)
 "$publisher" >/dev/null 2>&1 &
 pids+=($!)
 
-expected='ROW LASER planar_lidar_t
-ROW LASER_TO_LOCAL rigid_transform_t
-ROW RIMOD_SCAN scan_t
-ROW RIMOD_RANGE_IMAGE range_image_t
-ROW RIMOD_FEATURES feature_set_t
-ROW RIMOD_MODEL object_model_t
-ROW RIMOD_HYPOTHESES pose_hypotheses_t
-ROW RIMOD_DETECTIONS detections_t
-ROW RIMOD_STATUS status_t'
+expected='ROW LASER planar_lidar_t 0
+ROW LASER_TO_LOCAL rigid_transform_t 0
+ROW RIMOD_SCAN scan_t 0
+ROW RIMOD_RANGE_IMAGE range_image_t 0
+ROW RIMOD_FEATURES feature_set_t 0
+ROW RIMOD_MODEL object_model_t 0
+ROW RIMOD_HYPOTHESES pose_hypotheses_t 0
+ROW RIMOD_DETECTIONS detections_t 0
+ROW RIMOD_STATUS status_t 0'
 
 missing() {
   while IFS= read -r row; do grep -qxF -- "$row" "$work/spy.log" || echo "$row"; done <<<"$expected"
