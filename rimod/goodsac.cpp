@@ -62,7 +62,8 @@ std::optional<Eigen::Isometry3d> PoseOf(const std::array<const Pair*, 3>& triple
   const Eigen::Isometry3d T_sensor_object =
       AbsoluteOrientation({triple[0]->model, triple[1]->model, triple[2]->model},
                           {triple[0]->scene, triple[1]->scene, triple[2]->scene});
-  if (T_sensor_object.linear()(2, 2) < std::cos(params.max_tilt)) return std::nullopt;
+  // Negated so that a pose that is no number (features may come over the bus) is left out too.
+  if (!(T_sensor_object.linear()(2, 2) >= std::cos(params.max_tilt))) return std::nullopt;
   for (const Pair* pair : triple) {
     const Eigen::Vector3d turned = T_sensor_object.linear() * pair->model_normal;
     if (turned.dot(pair->scene_normal) < params.min_normal_cosine) return std::nullopt;
