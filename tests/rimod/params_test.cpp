@@ -1,0 +1,147 @@
+#include "rimod/params.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/support/matchers.h"
+
+namespace rimod {
+namespace {
+
+// A real parameter, its name as complaints give it, and values just out of its range.
+struct RealField {
+  std::string stage, name;
+  std::function<double&(PipelineParams&)> field;
+  std::vector<double> illegal;
+};
+
+struct CountField {
+  std::string stage, name;
+  std::function<int&(PipelineParams&)> field;
+  std::vector<int> illegal;
+};
+
+#define REAL(stage, name, ...)                                                                 \
+  {                                                                                            \
+#stage, #name, [](PipelineParams & p) -> double& { return p.stage.name; }, { __VA_ARGS__ } \
+  }
+#define COUNT(stage, name, ...)                                                             \
+  {                                                                                         \
+#stage, #name, [](PipelineParams & p) -> int& { return p.stage.name; }, { __VA_ARGS__ } \
+  }
+
+const std::vector<RealField>& RealFields() {
+  static const std::vector<RealField> fields = {
+      REAL(range_image, resolution, 0.0, 0.0009, 0.11),
+      REAL(range_image, min_range, -0.01),
+      REAL(interest_points, harris_k, -0.01, 0.26),
+      REAL(interest_points, max_depth_jump, 0.0, -1.0),
+      REAL(interest_points, min_strength, -0.1),
+      REAL(interest_points, suppression_radius, -0.01),
+      REAL(interest_points, max_range, 0.0, -1.0),
+      REAL(range_patch, support_size, 0.01, 2.1),
+      REAL(range_patch, normal_radius, 0.0, 2.1),
+      REAL(range_patch, max_vertical_cosine, -0.1, 1.1),
+      REAL(model_surface, point_spacing, 0.001, 0.2),
+      REAL(model_surface, box_margin, -0.01, 1.1),
+      REAL(model_surface, ground_clearance, -0.01, 1.1),
+      REAL(model_surface, normal_radius, 0.001, 0.6),
+      REAL(model_surface, see_through, 0.0, -1.0),
+      REAL(model_views, min_elevation, -1.5, 1.5),
+      REAL(model_views, max_elevation, -1.5, 1.5),
+      REAL(model_views, distance, 0.0, -2.0),
+      REAL(matching, max_descriptor_distance, 0.0, -1.0),
+      REAL(goodsac, min_separation, -0.01),
+      REAL(goodsac, distance_tolerance, 0.0, -0.1),
+      REAL(goodsac, min_triangle_height, -0.01),
+      REAL(goodsac, min_normal_cosine, -1.1, 1.1),
+      REAL(goodsac, max_tilt, -0.1, 3.2),
+      REAL(scoring, epsilon, 0.0, -0.1),
+      REAL(scoring, penalty, -1.0),
+      REAL(scoring, no_return_penalty, -1.0),
+      REAL(scoring, gamma, -0.1, 1.1),
+      REAL(pruning, radius, -0.1, 10.1),
+      REAL(collisions, cell, 0.004, 1.1),
+      REAL(collisions, max_share, -0.1, 1.1),
+      REAL(validation, min_score, -0.1, 1.1),
+  };
+  return fields;
+}
+
+const std::vector<CountField>& CountFields() {
+  static const std::vector<CountField> fields = {
+      COUNT(interest_points, max_points, 0, -1),
+      COUNT(interest_points, harris_window, 1, 16),
+      COUNT(range_patch, resolution, 1, 17),
+      COUNT(range_patch, min_points, 2),
+      COUNT(model_surface, min_neighbours, 2, 1001),
+      COUNT(model_views, azimuths, 0, 361),
+      COUNT(model_views, elevations, 0, 31),
+      COUNT(model_views, validation_points, 0, 10001),
+      COUNT(matching, max_matches, 0, -5),
+      COUNT(matching, max_checks, 0),
+      COUNT(goodsac, max_correspondences, 2),
+      COUNT(goodsac, max_trials, 0),
+      COUNT(goodsac, max_triples, 0),
+      COUNT(scoring, window, -1, 4),
+      COUNT(validation, min_pixels, 0),
+  };
+  return fields;
+}
+
+#undef REAL
+#undef COUNT
+
+TEST(PipelineParamsTest, WhatAMethodStartsFromIsLegal) {
+  for (const Method method : {Method::kPaper, Method::kDefault}) {
+    const PipelineParams params = DefaultParams(method);
+    EXPECT_EQ(params.method, method);
+    EXPECT_NO_THROW(params.Validate());
+  }
+}
+
+TEST(PipelineParamsTest, NamesTheRealFieldThatIsOutOfRange) {
+  for (const RealField& field : RealFields()) {
+    std::vector<double> values = field.illegal;
+    values.insert(values.end(), {std::nan(""), HUGE_VAL, -HUGE_VAL});
+    for (const double value : values) {
+      PipelineParams params;
+      field.field(params) = value;
+      EXPECT_TRUE(Complains([&] { params.Validate(); }, {field.stage, field.name}))
+          << field.stage << ' ' << field.name << ' ' << value;
+    }
+  }
+}
+
+TEST(PipelineParamsTest, NamesTheCountThatIsOutOfRange) {
+  for (const CountField& field : CountFields()) {
+    for (const int value : field.illegal) {
+      PipelineParams params;
+      field.field(params) = value;
+      EXPECT_TRUE(
+          Complains([&] { params.Validate(); }, {field.stage, field.name, std::to_string(value)}));
+    }
+  }
+}
+
+TEST(PipelineParamsTest, ChecksWhatLiesOutsideTheStages) {
+  PipelineParams params;
+  params.max_reported_hypotheses = 0;
+  EXPECT_TRUE(Complains([&] { params.Validate(); }, {"max_reported_hypotheses", "0"}));
+  params = PipelineParams();
+  params.validation.scoring.epsilon = -1.0;
+  EXPECT_TRUE(Complains([&] { params.Validate(); }, {"epsilon"}));
+  params = PipelineParams();
+  params.sweep.line_duration = 0.0;
+  EXPECT_TRUE(Complains([&] { params.Validate(); }, {"line_duration"}));
+  params = PipelineParams();
+  params.model_views.max_elevation = params.model_views.min_elevation - 0.01;
+  EXPECT_TRUE(Complains([&] { params.Validate(); }, {"max_elevation"}));
+}
+
+}  // namespace
+}  // namespace rimod
