@@ -73,6 +73,12 @@ CandidateList ValidateCandidates(const RangeImage& image, const CandidateList& c
   return validated;
 }
 
+CandidateList WithoutCollisions(const CandidateList& candidates, const ModelDatabase& database,
+                                const PipelineParams& params, const Execution& execution) {
+  const StageScope stage(execution, "collisions");
+  return RejectCollisions(candidates, database.collision_shapes(), params.collisions);
+}
+
 // The candidates of a later stage first, each listed with the last stage that it passed.
 void ReportHypotheses(const RangeImage& image, const ModelDatabase& database,
                       const std::vector<std::pair<HypothesisStage, const CandidateList*>>& stages,
@@ -121,15 +127,20 @@ DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& feature
   const auto poses = GeneratePoses(correspondences, features, database, params, execution);
   CandidateList scored = ScorePoses(image, poses, database, params, execution);
   const int num_found = static_cast<int>(scored.size());
-  CandidateList pruned, collision_free;
+  CandidateList pruned;
   {
-    const StageScope stage(execution, "collisions");
+    const StageScope stage(execution, "pruning");
     std::sort(scored.begin(), scored.end(), BetterCandidate);
     pruned = PruneToLocalBest(scored, database.models(), params.pruning);
-    collision_free = RejectCollisions(pruned, database.collision_shapes(), params.collisions);
   }
-  const CandidateList validated =
-      ValidateCandidates(image, collision_free, database, params, execution);
+  CandidateList collision_free, validated;
+  if (params.validation.before_collisions) {
+    validated = ValidateCandidates(image, pruned, database, params, execution);
+    validated = collision_free = WithoutCollisions(validated, database, params, execution);
+  } else {
+    collision_free = WithoutCollisions(pruned, database, params, execution);
+    validated = ValidateCandidates(image, collision_free, database, params, execution);
+  }
 
   DetectionResult result;
   result.num_hypotheses_found = num_found;

@@ -67,6 +67,9 @@ struct ValidationParams {
   ScoringParams scoring;   // for the pixel-by-pixel comparison
   double min_score = 0.4;  // candidates below are false positives; 0 .. 1
   int min_pixels = 20;     // of the model in the image, fewer say nothing; >= 1
+  // Candidates are validated before collisions are looked for, which then keep the one that
+  // validation scored best.
+  bool before_collisions = false;
   // Weight of the share of the pixels along the outside of the model's silhouette where the scene
   // goes on at the model's depth, as it does where a model lies in a larger surface; subtracted
   // from the score; 0 .. 10, 0 = not looked at.
