@@ -41,26 +41,31 @@ std::string SweepName(const Scene& scene, const SweepFiles& files, int sweep, in
 // Takes a scanner's lines one after the other and writes what is wanted of them.
 class SweepWriter {
  public:
-  SweepWriter(const Scene& scene, int num_sweeps, const SweepParams& params,
-              const SweepFiles& files)
-      : scene_(scene), num_sweeps_(num_sweeps), files_(files), assembler_(params) {
+  SweepWriter(const Scene& scene, int num_sweeps, const Channels& channels,
+              const SweepParams& params, const SweepFiles& files)
+      : scene_(scene),
+        num_sweeps_(num_sweeps),
+        laser_channel_(channels.laser),
+        pose_channel_(channels.laser_to_local),
+        files_(files),
+        assembler_(params) {
     if (!files.log.empty()) log_.emplace(files.log);
     if (!files.truth.empty()) truth_.emplace(scene);
   }
 
-  template <typename Message>
-  void Log(const std::string& channel, const Message& message) {
-    if (!log_) return;
-    const std::vector<std::uint8_t> bytes = EncodeMessage(message);
-    log_->Write(message.utime, channel, bytes.data(), bytes.size());
+  // Both go on as a receiver of the messages has them, so that log and clouds agree to the bit.
+  void AddPose(const TimedPose& pose) {
+    const bot_core::rigid_transform_t message = ToMessage(pose);
+    Log(pose_channel_, message);
+    WriteClouds(assembler_.AddPose(*FromMessage(message).pose));
   }
 
-  void AddPose(const TimedPose& pose) { WriteClouds(assembler_.AddPose(pose)); }
-
   void AddLine(const ScannedLine& line) {
+    const bot_core::planar_lidar_t message = ToMessage(line.line);
+    Log(laser_channel_, message);
     ++result_.num_lines;
     if (truth_) truth_->Add(line);
-    WriteClouds(assembler_.AddLine(line.line));
+    WriteClouds(assembler_.AddLine(*FromMessage(message).line));
   }
 
   void EndSweep(int sweep) {
@@ -81,6 +86,13 @@ class SweepWriter {
   }
 
  private:
+  template <typename Message>
+  void Log(const std::string& channel, const Message& message) {
+    if (!log_) return;
+    const std::vector<std::uint8_t> bytes = EncodeMessage(message);
+    log_->Write(message.utime, channel, bytes.data(), bytes.size());
+  }
+
   void WriteClouds(const std::vector<Sweep>& sweeps) {
     for (const Sweep& sweep : sweeps) {
       const int number = static_cast<int>(result_.num_points.size());
@@ -98,6 +110,7 @@ class SweepWriter {
 
   const Scene& scene_;
   int num_sweeps_;
+  std::string laser_channel_, pose_channel_;
   const SweepFiles& files_;
   SweepAssembler assembler_;
   std::optional<EventLogWriter> log_;
@@ -148,17 +161,12 @@ SweepParams SweepParamsFor(const Sensor& sensor, SweepParams base) {
   return base;
 }
 
-SweepFilesResult WriteSweeps(const Scene& scene, int num_sweeps, const std::string& laser_channel,
-                             const std::string& pose_channel, const SweepParams& params,
-                             const SweepFiles& files, const std::atomic<bool>& stop) {
+SweepFilesResult WriteSweeps(const Scene& scene, int num_sweeps, const Channels& channels,
+                             const SweepParams& params, const SweepFiles& files,
+                             const std::atomic<bool>& stop) {
   const RayCaster caster(scene.objects);
   const LaserScanner scanner(scene.sensor, scene.noise, caster, scene.seed, scene.start_utime);
-  SweepWriter writer(scene, num_sweeps, params, files);
-  const auto add_pose = [&](std::int64_t line) {
-    const TimedPose pose = scanner.TimedPoseOf(line);
-    writer.Log(pose_channel, ToMessage(pose));
-    writer.AddPose(pose);
-  };
+  SweepWriter writer(scene, num_sweeps, channels, params, files);
   std::int64_t line = 0;
   for (int sweep = 0; sweep < num_sweeps; ++sweep) {
     const bool last = sweep + 1 == num_sweeps;
@@ -166,13 +174,12 @@ SweepFilesResult WriteSweeps(const Scene& scene, int num_sweeps, const std::stri
     for (int i = 0; i < num_lines; ++i, ++line) {
       if (stop) return writer.Abandon();
       const ScannedLine scanned = scanner.Scan(line);
-      add_pose(line);
-      writer.Log(laser_channel, ToMessage(scanned.line));
+      writer.AddPose(scanner.TimedPoseOf(line));
       writer.AddLine(scanned);
       if (i + 1 == scanner.num_lines()) writer.EndSweep(sweep);
     }
   }
-  add_pose(line);
+  writer.AddPose(scanner.TimedPoseOf(line));
   return writer.Finish();
 }
 

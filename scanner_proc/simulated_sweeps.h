@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/channels.h"
 #include "rimod/sweep.h"
 #include "scanner_proc/scene.h"
 
@@ -31,9 +32,9 @@ struct SweepFilesResult {
 SweepParams SweepParamsFor(const Sensor& sensor, SweepParams base);
 
 // Scans num_sweeps sweeps of the scene and writes them. The same scene gives the same bytes.
-SweepFilesResult WriteSweeps(const Scene& scene, int num_sweeps, const std::string& laser_channel,
-                             const std::string& pose_channel, const SweepParams& params,
-                             const SweepFiles& files, const std::atomic<bool>& stop);
+SweepFilesResult WriteSweeps(const Scene& scene, int num_sweeps, const Channels& channels,
+                             const SweepParams& params, const SweepFiles& files,
+                             const std::atomic<bool>& stop);
 
 // Writes a recording of the scene's only object of a class into the folder, which is made: a
 // scan_NNN.pcd from each viewpoint round it and, when all are there, model.json. Returns an error

@@ -21,30 +21,37 @@ constexpr int kBadUsage = 2;
 
 void AddSimulatorOptions(CLI::App* app, SimulatorOptions* options) {
   app->add_option("SCENE", options->scene, "Scene file (YAML); docs/simulator.md has its keys")
-      ->required();
+      ->required()
+      ->type_name("SCENE.yaml");
   app->add_option("--log", options->files.log,
-                  "Write an LCM log instead of publishing; the same scene gives the same bytes");
+                  "Write an LCM log instead of publishing; the same scene gives the same bytes")
+      ->type_name("FILE");
   app->add_option("--pcd", options->files.pcd,
-                  "Write the assembled cloud (several sweeps: NAME#0.pcd, NAME#1.pcd, ..)");
-  app->add_option(
-      "--truth", options->files.truth,
-      "Write which objects of a class stand where and how much of them was seen (JSON)");
+                  "Write the assembled cloud (several sweeps: NAME#0.pcd, NAME#1.pcd, ..)")
+      ->type_name("FILE.pcd");
+  app->add_option("--truth", options->files.truth,
+                  "Write which objects of a class stand where and how much of them was seen (JSON)")
+      ->type_name("FILE.json");
   app->add_option(
          "--recording", options->recording,
          "Carry the sensor round the scene's only object of a class and write a folder for "
          "rimod-modeler --recording")
       ->type_name("DIR");
   app->add_option("--views", options->num_views, "Viewpoints of a recording, evenly spread")
+      ->type_name("N")
       ->check(CLI::Range(1, 1000));
   app->add_option("--speed", options->speed,
                   "Publish so many times faster than real time; 0: as fast as receivers follow")
+      ->type_name("FACTOR")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   app->add_option("--repeat", options->num_sweeps,
                   "Sweeps, down and up in turn; 0: until stopped (not into files)")
+      ->type_name("N")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   app->add_option("--seed", options->seed, "Seed of the noise instead of the scene's")
+      ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{9000000000000000}));
   app->footer(
       "Without --log, --pcd, --truth or --recording it publishes the lines (LASER) and poses\n"
@@ -106,8 +113,7 @@ int SimulatorProcess::RunOffline(const SweepParams& params, const std::atomic<bo
     return error.empty() ? kDone : kFailed;
   }
   const SweepFilesResult result =
-      WriteSweeps(scene_, options_.num_sweeps, channels_.laser, channels_.laser_to_local,
-                  sensor_params, options_.files, stop);
+      WriteSweeps(scene_, options_.num_sweeps, channels_, sensor_params, options_.files, stop);
   for (const std::string& error : result.errors) spdlog::error(error);
   if (result.stopped) {
     spdlog::warn("stopped: log and truth were not written");

@@ -1,5 +1,6 @@
 #include "scanner_proc/yaml_section.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -45,7 +46,7 @@ void YamlSection::Fail(const std::string& key, const std::string& cause) const {
     }
   }
   const std::string path = PathOf(key);
-  throw YamlError(file_ + ":" + std::to_string(line + 1) + ": " +
+  throw YamlError(file_ + ":" + std::to_string(std::max(line, 0) + 1) + ": " +
                   (path.empty() ? "the file" : path) + ": " + cause);
 }
 
