@@ -38,10 +38,17 @@ build() {
   if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache
   fi
-  cmake --preset release -DRIMOD_BUILD_TESTS=OFF -DRIMOD_BUILD_BENCHMARKS=OFF >"$out/build.log"
-  cmake --build --preset release --parallel "$(nproc)" |
-    tee -a "$out/build.log" | grep --line-buffered -E '^\[ *[0-9]+%\] (Linking CXX exec|Built target rimod-)|rror' || true
-  [ -x $bin/rimod-matcher ] || { echo "demo.sh: the build failed, see $out/build.log" >&2; exit 1; }
+  cmake --preset release >"$out/build.log"
+  local targets=(rimod-assembler rimod-extractor rimod-matcher rimod-modeler rimod-detect
+                 rimod-show rimod-snapshot rimod_lcmtypes_jar)
+  cmake --build --preset release --parallel "$(nproc)" --target "${targets[@]}" >>"$out/build.log" 2>&1 &
+  local compiler=$!
+  while kill -0 $compiler 2>/dev/null; do
+    printf '\r%s ' "$(grep -oE '^\[ *[0-9]+%\]' "$out/build.log" | tail -n 1)"
+    sleep 1
+  done
+  echo
+  wait $compiler || { tail -n 30 "$out/build.log"; echo "demo.sh: the build failed" >&2; exit 1; }
 }
 
 build_models() {
