@@ -146,13 +146,20 @@ std::vector<Candidate> SortedCandidates(const RangeImage& image, const cv::Mat& 
 void Suppress(const RangeImage& image, const PixelIndex& chosen, double radius,
               std::vector<char>* suppressed) {
   const Eigen::Vector3f& centre = image.point(chosen.row, chosen.column);
-  const double angle = radius / image.range(chosen.row, chosen.column);
-  const int reach = std::min(static_cast<int>(angle / image.grid().resolution) + 1, 60);
+  const double sine = std::min(radius / image.range(chosen.row, chosen.column), 1.0);
+  const double elevation = DirectionOf(centre.cast<double>()).elevation;
+  const auto pixels = [&image](double sine_of_angle) {
+    constexpr int kMostPixels = 60;
+    const double angle = std::asin(std::min(sine_of_angle, 1.0));
+    return std::min(static_cast<int>(angle / image.grid().resolution) + 1, kMostPixels);
+  };
+  const int rows = pixels(sine);
+  const int columns = pixels(sine / std::max(std::cos(elevation), 1e-3));  // meridians converge
   const float radius_sq = static_cast<float>(radius * radius);
-  for (int r = std::max(chosen.row - reach, 0);
-       r <= std::min(chosen.row + reach, image.height() - 1); ++r) {
-    for (int c = std::max(chosen.column - reach, 0);
-         c <= std::min(chosen.column + reach, image.width() - 1); ++c) {
+  for (int r = std::max(chosen.row - rows, 0); r <= std::min(chosen.row + rows, image.height() - 1);
+       ++r) {
+    for (int c = std::max(chosen.column - columns, 0);
+         c <= std::min(chosen.column + columns, image.width() - 1); ++c) {
       if (image.measured(r, c) && (image.point(r, c) - centre).squaredNorm() < radius_sq)
         (*suppressed)[r * image.width() + c] = 1;
     }
@@ -176,7 +183,7 @@ std::string InterestPointParams::Kind() const {
   std::ostringstream kind;
   kind << (measure == InterestMeasure::kHarris ? "harris" : "surface_change") << ' ' << max_points
        << ' ' << harris_window << ' ' << harris_k << ' ' << max_depth_jump << ' ' << bend_step
-       << ' ' << min_strength << ' ' << suppression_radius;
+       << ' ' << min_strength << ' ' << suppression_radius << ' ' << max_range;
   return kind.str();
 }
 
