@@ -2,6 +2,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -203,16 +205,21 @@ class Reader {
     return std::nullopt;
   }
 
-  // The complaint's first word is the struct's field: finds its key and line.
+  // The first word of the complaint that is a field of the section gives key and line.
   Mistake OutOfRange(const std::string& section, const std::string& complaint) const {
-    const std::string field = complaint.substr(0, complaint.find(' '));
-    for (const std::string& name : {field, field + "_deg"}) {
-      const auto found = keys_.find({section, name});
-      if (found == keys_.end()) continue;
-      const auto line = lines_.find({section, name});
-      const std::string unit = name == field ? "" : " (in radians)";
-      return {line == lines_.end() ? 0 : line->second,
-              Place(*found->second) + ": " + complaint + unit};
+    std::string words = complaint;
+    std::replace_if(
+        words.begin(), words.end(),
+        [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_'; }, ' ');
+    for (const std::string_view word : SplitWords(words)) {
+      for (const std::string& name : {std::string(word), std::string(word) + "_deg"}) {
+        const auto found = keys_.find({section, name});
+        if (found == keys_.end()) continue;
+        const auto line = lines_.find({section, name});
+        const std::string unit = name == word ? "" : " (in radians)";
+        return {line == lines_.end() ? 0 : line->second,
+                Place(*found->second) + ": " + complaint + unit};
+      }
     }
     const auto line = section_lines_.find(section);
     return {line == section_lines_.end() ? 0 : line->second,

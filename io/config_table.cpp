@@ -11,38 +11,29 @@ ChoiceOf Choice(Enum* value, std::vector<std::string> names) {
 
 using Keys = std::vector<ConfigKey>;
 
-// clang-format off: one line a key
+// One line a key.
+// clang-format off
 
 Keys ScanKeys(PipelineParams* p) {
   SweepParams& s = p->sweep;
   RangeImageParams& r = p->range_image;
   return {
-      {"sweep", "line_duration", &s.line_duration,
-       "s, from a line's first beam to the next line's; > 0"},
+      {"sweep", "line_duration", &s.line_duration, "s, from a line's first beam to the next line's; > 0"},
       {"sweep", "beams_per_line", &s.beams_per_line, "beams in line_duration; >= 1"},
       {"sweep", "min_range", &s.min_range, "m, nearer readings hit the robot itself; >= 0"},
-      {"sweep", "max_range", &s.max_range,
-       "m, readings at or above are beams without a return; > min_range"},
-      {"sweep", "reversal_angle_deg", DegreesOf{&s.reversal_angle},
-       "the tilt must come back this far to end a sweep; > 0"},
-      {"sweep", "pause_duration", &s.pause_duration,
-       "s, a gap in the lines or a tilt at rest this long ends a sweep; > 0"},
-      {"sweep", "rest_rate_deg", DegreesOf{&s.rest_rate},
-       "degrees a second, a slower tilt is at rest; >= 0"},
-      {"sweep", "min_sweep_angle_deg", DegreesOf{&s.min_sweep_angle},
-       "a sweep that turned less is incomplete; > 0"},
-      {"sweep", "max_missing_share", &s.max_missing_share,
-       "of a sweep's lines, more make it incomplete; 0 .. 1"},
-      {"sweep", "max_pose_gap", &s.max_pose_gap,
-       "s, poses farther apart are not interpolated; > 0"},
+      {"sweep", "max_range", &s.max_range, "m, readings at or above are beams without a return; > min_range"},
+      {"sweep", "reversal_angle_deg", DegreesOf{&s.reversal_angle}, "the tilt must come back this far to end a sweep; > 0"},
+      {"sweep", "pause_duration", &s.pause_duration, "s, a gap in the lines or a tilt at rest this long ends a sweep; > 0"},
+      {"sweep", "rest_rate_deg", DegreesOf{&s.rest_rate}, "degrees a second, a slower tilt is at rest; >= 0"},
+      {"sweep", "min_sweep_angle_deg", DegreesOf{&s.min_sweep_angle}, "a sweep that turned less is incomplete; > 0"},
+      {"sweep", "max_missing_share", &s.max_missing_share, "of a sweep's lines, more make it incomplete; 0 .. 1"},
+      {"sweep", "max_pose_gap", &s.max_pose_gap, "s, poses farther apart are not interpolated; > 0"},
       {"sweep", "max_buffered_lines", &s.max_buffered_lines, "lines that wait for a pose; >= 1"},
       {"sweep", "max_buffered_poses", &s.max_buffered_poses, "poses that wait for a line; >= 2"},
       {"sweep", "max_lines", &s.max_lines, "a longer sweep is ended as incomplete; >= 1"},
 
-      {"range_image", "resolution_deg", DegreesOf{&r.resolution},
-       "of a pixel (paper: 0.4); 0.06 .. 5.7"},
-      {"range_image", "min_range", &r.min_range,
-       "m, nearer points belong to the sensor's carrier; >= 0"},
+      {"range_image", "resolution_deg", DegreesOf{&r.resolution}, "of a pixel (paper: 0.4); 0.06 .. 5.7"},
+      {"range_image", "min_range", &r.min_range, "m, nearer points belong to the sensor's carrier; >= 0"},
   };
 }
 
@@ -50,31 +41,22 @@ Keys FeatureKeys(PipelineParams* p) {
   InterestPointParams& i = p->interest_points;
   RangePatchParams& d = p->range_patch;
   return {
-      {"interest_points", "measure", Choice(&i.measure, {"harris", "surface_change"}),
-       "what makes a pixel interesting: harris (paper) or surface_change"},
+      {"interest_points", "measure", Choice(&i.measure, {"harris", "surface_change"}), "what makes a pixel interesting: harris (paper) or surface_change"},
       {"interest_points", "max_points", &i.max_points, "the strongest are kept; >= 1"},
-      {"interest_points", "harris_window", &i.harris_window,
-       "pixels, side of the window of the gradients; 2 .. 15"},
+      {"interest_points", "harris_window", &i.harris_window, "pixels, side of the window of the gradients; 2 .. 15"},
       {"interest_points", "harris_k", &i.harris_k, "Harris' trace weight; 0 .. 0.25"},
-      {"interest_points", "max_depth_jump", &i.max_depth_jump,
-       "m, larger differences to a neighbour count as this much; > 0"},
-      {"interest_points", "bend_step", &i.bend_step,
-       "m, bends are measured over this distance (surface_change); > 0"},
+      {"interest_points", "max_depth_jump", &i.max_depth_jump, "m, larger differences to a neighbour count as this much; > 0"},
+      {"interest_points", "bend_step", &i.bend_step, "m, bends are measured over this distance (surface_change); > 0"},
       {"interest_points", "min_strength", &i.min_strength, "weaker points are left out; >= 0"},
-      {"interest_points", "suppression_radius", &i.suppression_radius,
-       "m, only the strongest point within is kept; >= 0"},
+      {"interest_points", "suppression_radius", &i.suppression_radius, "m, only the strongest point within is kept; >= 0"},
       {"interest_points", "max_range", &i.max_range, "m, farther points are left out; > 0"},
 
       {"range_patch", "resolution", &d.resolution, "cells a side (paper: 8); 2 .. 16"},
-      {"range_patch", "support_size", &d.support_size,
-       "m, side of the square (paper: 0.35); 0.02 .. 2"},
-      {"range_patch", "normal_radius", &d.normal_radius,
-       "m, the normal is that of the points this near; 0.01 .. 2"},
+      {"range_patch", "support_size", &d.support_size, "m, side of the square (paper: 0.35); 0.02 .. 2"},
+      {"range_patch", "normal_radius", &d.normal_radius, "m, the normal is that of the points this near; 0.01 .. 2"},
       {"range_patch", "min_points", &d.min_points, "measured points needed for a normal; >= 3"},
-      {"range_patch", "mask_empty_cells", &d.mask_empty_cells,
-       "cells without a point are not compared, else they count as the mean"},
-      {"range_patch", "max_vertical_cosine", &d.max_vertical_cosine,
-       "normals nearer to the vertical have no horizontal of their own; 0 .. 1"},
+      {"range_patch", "mask_empty_cells", &d.mask_empty_cells, "cells without a point are not compared, else they count as the mean"},
+      {"range_patch", "max_vertical_cosine", &d.max_vertical_cosine, "normals nearer to the vertical have no horizontal of their own; 0 .. 1"},
   };
 }
 
@@ -82,29 +64,21 @@ Keys ModelKeys(PipelineParams* p) {
   ModelSurfaceParams& s = p->model_surface;
   ModelViewParams& v = p->model_views;
   return {
-      {"model_surface", "point_spacing", &s.point_spacing,
-       "m, between the model's surface points; 0.002 .. 0.1"},
-      {"model_surface", "box_margin", &s.box_margin,
-       "m, points this far outside the box still belong to the object; 0 .. 1"},
-      {"model_surface", "ground_clearance", &s.ground_clearance,
-       "m, lower points are taken for the floor; 0 .. 1"},
-      {"model_surface", "normal_radius", &s.normal_radius,
-       "m, the normal is that of the points this near; 0.005 .. 0.5"},
-      {"model_surface", "see_through", &s.see_through,
-       "m, a scan that measured this far behind a point saw through it; > 0"},
-      {"model_surface", "min_neighbours", &s.min_neighbours,
-       "points within normal_radius, fewer are outliers; 3 .. 1000"},
+      {"model_surface", "point_spacing", &s.point_spacing, "m, between the model's surface points; 0.002 .. 0.1"},
+      {"model_surface", "box_margin", &s.box_margin, "m, points this far outside the box still belong to the object; 0 .. 1"},
+      {"model_surface", "ground_clearance", &s.ground_clearance, "m, lower points are taken for the floor; 0 .. 1"},
+      {"model_surface", "normal_radius", &s.normal_radius, "m, the normal is that of the points this near; 0.005 .. 0.5"},
+      {"model_surface", "see_through", &s.see_through, "m, a scan that measured this far behind a point saw through it; > 0"},
+      {"model_surface", "min_neighbours", &s.min_neighbours, "points within normal_radius, fewer are outliers; 3 .. 1000"},
 
       {"model_views", "azimuths", &v.azimuths, "viewpoints around the object; 1 .. 360"},
       {"model_views", "elevations", &v.elevations, "rings of viewpoints; 1 .. 30"},
-      {"model_views", "min_elevation_deg", DegreesOf{&v.min_elevation},
-       "of the lowest ring, seen from the object's centre; -80 .. 80"},
-      {"model_views", "max_elevation_deg", DegreesOf{&v.max_elevation},
-       "of the highest ring; >= min_elevation_deg"},
-      {"model_views", "distance", &v.distance,
-       "m, from the object's centre, at least 1.5 diameters; > 0"},
-      {"model_views", "validation_points", &v.validation_points,
-       "a view (paper: n = 100); 1 .. 10000"},
+      {"model_views", "min_elevation_deg", DegreesOf{&v.min_elevation}, "of the lowest ring, seen from the object's centre; -80 .. 80"},
+      {"model_views", "max_elevation_deg", DegreesOf{&v.max_elevation}, "of the highest ring; >= min_elevation_deg"},
+      {"model_views", "distance", &v.distance, "m, from the object's centre, at least 1.5 diameters; > 0"},
+      {"model_views", "validation_points", &v.validation_points, "a view (paper: n = 100); 1 .. 10000"},
+      {"model_views", "outside_points", &v.outside_points, "beside the silhouette, a view; 0 .. 10000"},
+      {"model_views", "outside_gap", &v.outside_gap, "m, from the silhouette to its outside points; 0.005 .. 0.5"},
   };
 }
 
@@ -112,77 +86,68 @@ Keys MatchingKeys(PipelineParams* p) {
   MatchingParams& m = p->matching;
   GoodsacParams& g = p->goodsac;
   return {
-      {"matching", "max_descriptor_distance", &m.max_descriptor_distance,
-       "m, root mean square a cell (paper: d_max); > 0"},
-      {"matching", "max_matches", &m.max_matches,
-       "nearest model features kept for one of the scene; >= 1"},
-      {"matching", "max_checks", &m.max_checks,
-       "model features looked at for one of the scene; >= 1"},
+      {"matching", "max_descriptor_distance", &m.max_descriptor_distance, "m, root mean square a cell (paper: d_max); > 0"},
+      {"matching", "max_matches", &m.max_matches, "nearest model features kept for one of the scene; >= 1"},
+      {"matching", "max_checks", &m.max_checks, "model features looked at for one of the scene; >= 1"},
+      {"matching", "min_shared_cells", &m.min_shared_cells, "cells that two descriptors must share to be compared anew over these; 0 = empty cells count as the mean .. 256"},
+      {"matching", "min_roughness", &m.min_roughness, "m, distances count relative to the patch's roughness, but at least this; 0 = as they are"},
 
-      {"goodsac", "max_correspondences", &g.max_correspondences,
-       "the best ones, that triples are made of (paper: n); >= 3"},
+      {"goodsac", "max_correspondences", &g.max_correspondences, "the best ones, that triples are made of (paper: n); >= 3"},
+      {"goodsac", "min_model_spacing", &g.min_model_spacing, "m, of a scene feature's correspondences to nearer model features only the best counts; 0 = all"},
+      {"goodsac", "max_matches_a_feature", &g.max_matches_a_feature, "best correspondences kept of a scene feature; 0 = all"},
       {"goodsac", "max_trials", &g.max_trials, "transformations computed for a model; >= 1"},
-      {"goodsac", "max_triples", &g.max_triples,
-       "triples looked at, most of them rejected early; >= 1"},
+      {"goodsac", "max_triples", &g.max_triples, "triples looked at, most of them rejected early; >= 1"},
       {"goodsac", "min_separation", &g.min_separation, "m, between the features of a triple; >= 0"},
-      {"goodsac", "distance_tolerance", &g.distance_tolerance,
-       "m, a distance in the scene against the model's; > 0"},
-      {"goodsac", "min_triangle_height", &g.min_triangle_height,
-       "m, triples on a line are left out; >= 0"},
-      {"goodsac", "min_normal_cosine", &g.min_normal_cosine,
-       "transformed normals against the scene's; -1 = not tested .. 1"},
-      {"goodsac", "max_tilt_deg", DegreesOf{&g.max_tilt},
-       "of the object's z-axis from the vertical; 180 = not tested"},
+      {"goodsac", "distance_tolerance", &g.distance_tolerance, "m, a distance in the scene against the model's; > 0"},
+      {"goodsac", "min_triangle_height", &g.min_triangle_height, "m, triples on a line are left out; >= 0"},
+      {"goodsac", "min_normal_cosine", &g.min_normal_cosine, "transformed normals against the scene's; -1 = not tested .. 1"},
+      {"goodsac", "max_tilt_deg", DegreesOf{&g.max_tilt}, "of the object's z-axis from the vertical; 180 = not tested"},
+      {"goodsac", "angle_tolerance_deg", DegreesOf{&g.angle_tolerance}, "angles of a pair's normals in the scene against the model's; 180 = not tested"},
+      {"goodsac", "height_tolerance", &g.height_tolerance, "m, a pair's difference in height in the scene against the model's; > 0, large = not tested"},
+      {"goodsac", "max_poses_a_correspondence", &g.max_poses_a_correspondence, "that have it as their worst member; 0 = no limit"},
   };
 }
 
 Keys ScoringKeys(const std::string& section, ScoringParams* s) {
   return {
-      {section, "epsilon", &s->epsilon,
-       "m, largest depth difference of a point at its place (eq. 1); > 0"},
+      {section, "epsilon", &s->epsilon, "m, largest depth difference of a point at its place (eq. 1); > 0"},
       {section, "penalty", &s->penalty, "for a point that the laser went through (eq. 1: p); >= 0"},
-      {section, "no_return_penalty", &s->no_return_penalty,
-       "for a point where the laser came back without a range; >= 0"},
+      {section, "no_return_penalty", &s->no_return_penalty, "for a point where the laser came back without a range; >= 0"},
       {section, "window", &s->window, "pixels around the point's own that may fit it; 0 .. 3"},
+      {section, "outside_weight", &s->outside_weight, "of the outside points at which the scene goes on, subtracted; 0 = not looked at .. 10"},
       {section, "gamma", &s->gamma, "smallest score of a hypothesis (section III-C); 0 .. 1"},
   };
 }
 
 Keys RejectionKeys(PipelineParams* p) {
   return {
-      {"pruning", "radius", &p->pruning.radius,
-       "of the model's diameter: only the best hypothesis within is kept; 0 .. 10"},
+      {"pruning", "radius", &p->pruning.radius, "of the model's diameter: only the best hypothesis within is kept; 0 .. 10"},
 
-      {"collisions", "cell", &p->collisions.cell,
-       "m, spacing of the low-resolution clouds; 0.005 .. 1"},
-      {"collisions", "max_share", &p->collisions.max_share,
-       "of the smaller cloud's points that may lie in the other; 0 .. 1"},
+      {"collisions", "cell", &p->collisions.cell, "m, spacing of the low-resolution clouds; 0.005 .. 1"},
+      {"collisions", "max_share", &p->collisions.max_share, "of the smaller cloud's points that may lie in the other; 0 .. 1"},
 
-      {"validation", "min_score", &p->validation.min_score,
-       "candidates below are false positives; 0 .. 1"},
-      {"validation", "min_pixels", &p->validation.min_pixels,
-       "of the model in the image, fewer say nothing; >= 1"},
+      {"validation", "min_score", &p->validation.min_score, "candidates below are false positives; 0 .. 1"},
+      {"validation", "min_pixels", &p->validation.min_pixels, "of the model in the image, fewer say nothing; >= 1"},
+      {"validation", "before_collisions", &p->validation.before_collisions, "candidates are validated before collisions are looked for"},
+      {"validation", "outside_weight", &p->validation.outside_weight, "of the silhouette's outside where the scene goes on, subtracted; 0 = not looked at .. 10"},
+      {"validation", "outside_gap", &p->validation.outside_gap, "pixels between the silhouette and those compared; 1 .. 10"},
+      {"validation", "outside_depth", &p->validation.outside_depth, "m, the scene goes on when its depth differs by less; > 0"},
+      {"validation", "ground_height", &p->validation.ground_height, "m, lower points beside an object are what it stands on; 0 .. 10"},
   };
 }
 
 Keys ResultKeys(PipelineParams* p) {
   return {
-      {"result", "max_reported_hypotheses", &p->max_reported_hypotheses,
-       "in a result and its message; 1 .. 500"},
+      {"result", "max_reported_hypotheses", &p->max_reported_hypotheses, "in a result and its message; 1 .. 500"},
   };
 }
 
 Keys BusKeys(BusParams* b) {
   return {
-      {"bus", "max_megabytes_per_second", &b->max_megabytes_per_second,
-       "large messages are sent at this rate at most; 0.1 .. 10000"},
-      {"bus", "burst_kilobytes", &b->burst_kilobytes, "sent at once after a rest; 60 .. 100000"},
-      {"bus", "max_waiting_scans", &b->max_waiting_scans,
-       "complete scans that wait, further ones push the oldest out; 1 .. 1000"},
-      {"bus", "idle_time", &b->idle_time,
-       "s, the assembler ends a sweep when nothing came for so long; 0.05 .. 3600"},
-      {"bus", "join_patience", &b->join_patience,
-       "s, wait for missing parts of a scan; 0.1 .. 3600"},
+      {"bus", "max_megabytes_per_second", &b->max_megabytes_per_second, "large messages are sent at this rate at most; 0.1 .. 10000"},
+      {"bus", "max_waiting_scans", &b->max_waiting_scans, "complete scans that wait, further ones push the oldest out; 1 .. 1000"},
+      {"bus", "idle_time", &b->idle_time, "s, the assembler ends a sweep when nothing came for so long; 0.05 .. 3600"},
+      {"bus", "join_patience", &b->join_patience, "s, wait for missing parts of a scan; 0.1 .. 3600"},
   };
 }
 

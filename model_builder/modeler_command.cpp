@@ -110,17 +110,18 @@ Built Build(const ModelerOptions& options, const PipelineParams& params) {
 }
 
 void PrintSummary(const ObjectModel& model, const std::string& path) {
-  std::size_t total = 0, fewest = 0, most = 0;
+  std::size_t total = 0, most = 0;
+  std::size_t fewest = model.views.empty() ? 0 : model.views.front().features.size();
   for (const ModelView& view : model.views) {
-    const std::size_t count = view.features.size();
-    fewest = total == 0 && most == 0 ? count : std::min(fewest, count);
-    most = std::max(most, count);
-    total += count;
+    fewest = std::min(fewest, view.features.size());
+    most = std::max(most, view.features.size());
+    total += view.features.size();
   }
   const Eigen::Vector3d size = model.box_max - model.box_min;
   std::error_code ignored;
   const auto file_bytes = static_cast<double>(std::filesystem::file_size(path, ignored));
-  const double mean = static_cast<double>(total) / std::max<double>(1.0, model.views.size());
+  const auto num_views = static_cast<double>(std::max<std::size_t>(1, model.views.size()));
+  const double mean = static_cast<double>(total) / num_views;
   std::cout << fmt::format(
       "{}: {}\n"
       "  source             {}\n"
