@@ -70,7 +70,9 @@ void ComputeModelViews(const PipelineParams& params, const Execution& execution,
 }
 
 bool ModelMatchesParams(const ObjectModel& model, const PipelineParams& params) {
-  return model.descriptor_kind == ModelFeatureKind(params);
+  // The size too: a model from elsewhere may claim a kind that its descriptors are not of.
+  return model.descriptor_kind == ModelFeatureKind(params) &&
+         model.descriptor_size == params.range_patch.resolution * params.range_patch.resolution;
 }
 
 }  // namespace rimod
