@@ -285,7 +285,7 @@ Surface SurfaceOfPoints(const std::vector<Eigen::Vector3f>& points,
   params.Validate();
   std::vector<OrientedPoint> unoriented;
   for (const Eigen::Vector3f& point : points)
-    unoriented.push_back({point.cast<double>(), Eigen::Vector3d::UnitZ()});
+    if (point.allFinite()) unoriented.push_back({point.cast<double>(), Eigen::Vector3d::UnitZ()});
   const std::vector<OrientedPoint> merged = MergeCells(unoriented, params.point_spacing);
   std::vector<Eigen::Vector3d> positions;
   for (const OrientedPoint& p : merged) positions.push_back(p.point);

@@ -33,7 +33,7 @@ Surface SurfaceOfRecording(const Recording& recording, const ModelSurfaceParams&
                            const Execution& execution);
 
 // The surface of an object's points whose seen side is not known: every point is there twice, once
-// a side.
+// a side. Points that are not finite are left out.
 Surface SurfaceOfPoints(const std::vector<Eigen::Vector3f>& points,
                         const ModelSurfaceParams& params);
 
