@@ -86,17 +86,18 @@ start() {
 stop_all() {
   local name failed=0
   for name in "$@"; do
-    [ -n "${pids[$name]:-}" ] || continue
     kill -TERM "${pids[$name]}" 2>/dev/null || true
-    ( sleep 10; kill -KILL "${pids[$name]}" ) 2>/dev/null &
-    local watchdog=$!
+    for _ in $(seq 100); do  # 10 s
+      kill -0 "${pids[$name]}" 2>/dev/null || break
+      sleep 0.1
+    done
+    kill -KILL "${pids[$name]}" 2>/dev/null || true
     if wait "${pids[$name]}"; then
       echo "$name stopped"
     else
-      echo "$name ended with exit code $?, see $out/$name.log" >&2
+      echo "$name did not stop cleanly, see $out/$name.log" >&2
       failed=1
     fi
-    kill "$watchdog" 2>/dev/null || true
     unset "pids[$name]"
   done
   return $failed
