@@ -177,6 +177,26 @@ TEST(DescriptorIndexTest, TiesAreInOrderOfIndex) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(found[i].index, i);
 }
 
+TEST(DescriptorIndexTest, ComparesOverSharedCellsWhenTold) {
+  const std::vector<Descriptor> descriptors = RandomDescriptors(400, 12, 11, 0.4);
+  const DescriptorIndex index(Pointers(descriptors));
+  RandomValues random(12);
+  for (const int min_shared : {1, 4, 8}) {
+    const Descriptor query = RandomDescriptor(&random, 12, 0.4);
+    std::vector<double> expected;
+    for (const Descriptor& descriptor : descriptors) {
+      const double distance = DescriptorDistance(descriptor, query, min_shared);
+      if (std::isfinite(distance)) expected.push_back(distance);
+    }
+    std::sort(expected.begin(), expected.end());
+    const std::vector<DescriptorMatch> found =
+        index.FindNear(query, 400, kAnyDistance, 400, min_shared);
+    ASSERT_EQ(found.size(), expected.size()) << min_shared;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_NEAR(found[k].distance, expected[k], 1e-7);
+  }
+}
+
 TEST(DescriptorIndexTest, NothingToFindIsNothing) {
   const DescriptorIndex empty({});
   EXPECT_EQ(empty.size(), 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "rimod/surface_rendering.h"
 #include "tests/io/random_values.h"
 #include "tests/support/ray_caster.h"
 #include "tests/support/surfel_models.h"
@@ -192,7 +193,12 @@ ValidationParams Validation() {
   params.scoring.penalty = 10.0;
   params.scoring.no_return_penalty = 0.5;
   params.scoring.window = 0;
+  params.scoring.outside_weight = 0.0;
   params.min_pixels = 20;
+  params.outside_weight = 0.0;
+  params.outside_gap = 2;
+  params.outside_depth = 0.1;
+  params.ground_height = 0.05;
   return params;
 }
 
@@ -263,6 +269,32 @@ TEST(ValidatePoseTest, TooFewPixelsSayNothing) {
   EXPECT_EQ(ValidatePose(image, Crate(), kCratePose, params), 0.0);
   EXPECT_EQ(ValidatePose(image, Crate(), Placed(-3, 0, 0, 0), Validation()), 0.0);  // behind
   EXPECT_EQ(ValidatePose(RangeImage(), Crate(), kCratePose, Validation()), 0.0);
+}
+
+TEST(LookAroundTest, AnObjectStandsFreeAndAPatchOfWallDoesNot) {
+  const RangeImage image = SeeCrate(true);
+  const SilhouetteSurroundings crate =
+      LookAround(image, RenderModel(Crate(), kCratePose, image.grid()), kCratePose, Validation());
+  EXPECT_GT(crate.compared, 50);
+  EXPECT_LT(crate.continued, crate.compared / 20);
+
+  const ObjectModel plate = PlateModel("plate", 0.6, 0.01);
+  const Eigen::Isometry3d in_wall = Placed(4.0, -0.8, -0.4, M_PI);  // its front is the wall's
+  const SilhouetteSurroundings wall =
+      LookAround(image, RenderModel(plate, in_wall, image.grid()), in_wall, Validation());
+  EXPECT_GT(wall.compared, 50);
+  EXPECT_GT(wall.continued, wall.compared * 9 / 10);
+}
+
+TEST(ValidatePoseTest, ASceneThatGoesOnCostsItsWeight) {
+  const RangeImage image = SeeCrate(false);
+  const ObjectModel plate = PlateModel("plate", 0.6, 0.01);
+  const Eigen::Isometry3d in_wall = Placed(4.0, -0.8, -0.4, M_PI);
+  ValidationParams params = Validation();
+  params.scoring.window = 1;
+  EXPECT_GT(ValidatePose(image, plate, in_wall, params), 0.9);
+  params.outside_weight = 1.0;
+  EXPECT_LT(ValidatePose(image, plate, in_wall, params), 0.1);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "tests/io/random_values.h"
 #include "tests/support/matchers.h"
+#include "tests/support/ray_caster.h"
 
 namespace rimod {
 namespace {
@@ -238,6 +239,54 @@ TEST(CandidatePosesTest, RejectsPosesThatTiltTooFar) {
                      .toRotationMatrix();
     EXPECT_EQ(Triangle(T).Poses(params).size(), tilt < 0.3 ? 1u : 0u) << tilt;
   }
+}
+
+TEST(CandidatePosesTest, RejectsPairsWhoseHeightsDiffer) {
+  GoodsacParams params = Lenient();
+  params.height_tolerance = 0.05;
+  const Case upright = Triangle(Placed(1, 2, 3, 0.7));
+  EXPECT_EQ(upright.Poses(params).size(), 1u);
+  Eigen::Isometry3d lying = Placed(1, 2, 3, 0.7);
+  lying.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE(Triangle(lying).Poses(params).empty());
+}
+
+TEST(CandidatePosesTest, RejectsPairsWhoseNormalsStandOtherwise) {
+  GoodsacParams params = Lenient();
+  params.angle_tolerance = 0.2;
+  Case given = Triangle(RandomValues(14).Pose());
+  EXPECT_EQ(given.Poses(params).size(), 1u);
+  const Eigen::Vector3f axis = given.scene[1].normal.unitOrthogonal();
+  given.scene[1].normal = Eigen::AngleAxisf(0.4f, axis) * given.scene[1].normal;
+  EXPECT_TRUE(given.Poses(params).empty());
+}
+
+TEST(CandidatePosesTest, ASceneFeaturesWorseMatchesAreLeftOutWhenTold) {
+  // Each scene feature also matches, worse, the model's feature beside its own.
+  Case given = RandomCase(6, 15, Eigen::Isometry3d::Identity());
+  const std::size_t alone = given.Poses(Lenient()).size();
+  for (int i = 0; i < 6; ++i) {
+    Feature beside = given.model[i];
+    beside.position.x() += 0.02f;
+    given.model.push_back(beside);
+    given.correspondences.push_back({i, 6 + i, 1.0});
+  }
+  EXPECT_GT(given.Poses(Lenient()).size(), alone);
+  GoodsacParams params = Lenient();
+  params.max_matches_a_feature = 1;
+  EXPECT_EQ(given.Poses(params).size(), alone);
+  params = Lenient();
+  params.min_model_spacing = 0.03;
+  EXPECT_EQ(given.Poses(params).size(), alone);
+  params.min_model_spacing = 0.01;
+  EXPECT_GT(given.Poses(params).size(), alone);
+}
+
+TEST(CandidatePosesTest, PosesOfEachCorrespondenceAreLimitedWhenTold) {
+  GoodsacParams params = Lenient();
+  params.max_poses_a_correspondence = 2;
+  // Of 8 correspondences the third is the worst of one triple, the five after it of two or more.
+  EXPECT_EQ(RandomCase(8, 16, Eigen::Isometry3d::Identity()).Poses(params).size(), 1u + 5u * 2u);
 }
 
 TEST(CandidatePosesTest, TooFewOrUnusableCorrespondencesGiveNothing) {

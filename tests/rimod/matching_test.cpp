@@ -83,6 +83,40 @@ TEST(MatchingTest, ThreadsDoNotMatter) {
   EXPECT_TRUE(Equal(MatchFeatures(scene, index, params, Backwards()), alone));
 }
 
+TEST(MatchingTest, RoughPatchesComeBeforeFlatOnesWhenTold) {
+  // Both are 1 mm from their model's; the first is flat, the second has 3 cm steps.
+  std::vector<Feature> scene(2), model(2);
+  scene[0].descriptor = {0, 0, 0, 0, 0, 0};
+  model[0].descriptor = {10, -10, 10, -10, 10, -10};
+  scene[1].descriptor = {300, -300, 300, -300, 300, -300};
+  model[1].descriptor = {310, -310, 310, -310, 310, -310};
+  MatchingParams params = Params(0.005, 1, 10);
+  std::vector<Correspondence> found = MatchFeatures(scene, IndexOf(model), params, Execution{});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].distance, found[1].distance, 1e-7);
+  params.min_roughness = 0.01;
+  found = MatchFeatures(scene, IndexOf(model), params, Execution{});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].distance, 0.001 / 0.01, 1e-5);  // at least the roughness given
+  EXPECT_NEAR(found[1].distance, 0.001 / 0.03, 1e-5);
+}
+
+TEST(MatchingTest, EmptyCellsDoNotCountWhenCellsMustBeShared) {
+  std::vector<Feature> scene(1), model(1);
+  scene[0].descriptor = {100, -100, kEmptyCell, 200};
+  model[0].descriptor = {100, -100, 900, kEmptyCell};
+  MatchingParams params = Params(0.001, 5, 10);
+  EXPECT_TRUE(MatchFeatures(scene, IndexOf(model), params, Execution{}).empty());
+  params.max_descriptor_distance = 1.0;
+  params.min_shared_cells = 2;
+  const std::vector<Correspondence> found =
+      MatchFeatures(scene, IndexOf(model), params, Execution{});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].distance, 0.0, 1e-9);
+  params.min_shared_cells = 3;
+  EXPECT_TRUE(MatchFeatures(scene, IndexOf(model), params, Execution{}).empty());
+}
+
 TEST(MatchingTest, NothingMatchesNothing) {
   const std::vector<Feature> features = RandomFeatures(5, 7);
   const MatchingParams params = Params(1.0, 5, 5);
