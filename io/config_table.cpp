@@ -94,7 +94,6 @@ Keys MatchingKeys(PipelineParams* p) {
 
       {"goodsac", "max_correspondences", &g.max_correspondences, "the best ones, that triples are made of (paper: n); >= 3"},
       {"goodsac", "min_model_spacing", &g.min_model_spacing, "m, of a scene feature's correspondences to nearer model features only the best counts; 0 = all"},
-      {"goodsac", "max_matches_a_feature", &g.max_matches_a_feature, "best correspondences kept of a scene feature; 0 = all"},
       {"goodsac", "max_trials", &g.max_trials, "transformations computed for a model; >= 1"},
       {"goodsac", "max_triples", &g.max_triples, "triples looked at, most of them rejected early; >= 1"},
       {"goodsac", "min_separation", &g.min_separation, "m, between the features of a triple; >= 0"},
@@ -114,7 +113,6 @@ Keys ScoringKeys(const std::string& section, ScoringParams* s) {
       {section, "penalty", &s->penalty, "for a point that the laser went through (eq. 1: p); >= 0"},
       {section, "no_return_penalty", &s->no_return_penalty, "for a point where the laser came back without a range; >= 0"},
       {section, "window", &s->window, "pixels around the point's own that may fit it; 0 .. 3"},
-      {section, "outside_weight", &s->outside_weight, "of the outside points at which the scene goes on, subtracted; 0 = not looked at .. 10"},
       {section, "gamma", &s->gamma, "smallest score of a hypothesis (section III-C); 0 .. 1"},
   };
 }

@@ -144,9 +144,8 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
     }
     for (int i = nodes_[node].first; i < nodes_[node].last; ++i) {
       ++checks;
-      const double distance_sq = min_shared > 0
-                                     ? SharedDistanceSq(q, filled, order_[i], min_shared)
-                                     : DistanceSq(q, order_[i]);
+      const double distance_sq = min_shared > 0 ? SharedDistanceSq(q, filled, order_[i], min_shared)
+                                                : DistanceSq(q, order_[i]);
       if (distance_sq * size_ <= max_sq) found.push_back({order_[i], std::sqrt(distance_sq)});
     }
   }

@@ -188,8 +188,7 @@ double ValidatePose(const RangeImage& image, const ObjectModel& model,
   double score = sum / count;
   if (params.outside_weight > 0.0) {
     const SilhouetteSurroundings around = LookAround(image, rendered, T_sensor_object, params);
-    if (around.compared > 0)
-      score -= params.outside_weight * around.continued / around.compared;
+    if (around.compared > 0) score -= params.outside_weight * around.continued / around.compared;
   }
   return std::max(0.0, score);
 }

@@ -74,7 +74,7 @@ struct ValidationParams {
   // goes on at the model's depth, as it does where a model lies in a larger surface; subtracted
   // from the score; 0 .. 10, 0 = not looked at.
   double outside_weight = 0.0;
-  int outside_gap = 2;  // pixels between the silhouette and those compared; 1 .. 10
+  int outside_gap = 2;         // pixels between the silhouette and those compared; 1 .. 10
   double outside_depth = 0.1;  // m, the scene goes on when its depth differs by less; > 0
   double ground_height =
       0.05;  // m, lower points beside an object are what it stands on and not compared; 0 .. 10

@@ -92,9 +92,6 @@ std::vector<Pair> BestPairs(std::vector<Correspondence> correspondences,
     const Feature& model = *model_features[correspondence.model_feature];
     const Eigen::Vector3d place = model.position.cast<double>();
     std::vector<Eigen::Vector3d>& taken = places[correspondence.scene_feature];
-    if (params.max_matches_a_feature > 0 &&
-        static_cast<int>(taken.size()) >= params.max_matches_a_feature)
-      continue;
     if (std::any_of(taken.begin(), taken.end(), [&](const Eigen::Vector3d& other) {
           return (other - place).squaredNorm() < spacing_sq;
         }))
@@ -112,7 +109,6 @@ void GoodsacParams::Validate() const {
   constexpr double kPi = 3.14159265358979323846;
   CheckWithin("goodsac max_correspondences", max_correspondences, 3, 100'000);
   CheckWithin("goodsac min_model_spacing", min_model_spacing, 0.0, 10.0);
-  CheckWithin("goodsac max_matches_a_feature", max_matches_a_feature, 0, 100'000);
   CheckWithin("goodsac max_trials", max_trials, 1, 100'000'000);
   CheckWithin("goodsac max_triples", max_triples, 1, 2'000'000'000);
   CheckWithin("goodsac min_separation", min_separation, 0.0, 10.0);
@@ -140,8 +136,8 @@ std::vector<Eigen::Isometry3d> CandidatePoses(std::vector<Correspondence> corres
   const std::vector<Pair> pairs =
       BestPairs(std::move(correspondences), scene_features, model_features, params);
   const int count = static_cast<int>(pairs.size());
-  const int limit = params.max_poses_a_correspondence > 0 ? params.max_poses_a_correspondence
-                                                          : params.max_trials;
+  const int limit =
+      params.max_poses_a_correspondence > 0 ? params.max_poses_a_correspondence : params.max_trials;
   std::vector<Eigen::Isometry3d> poses;
   std::vector<std::vector<int>> partners(pairs.size());  // compatible and better, best first
   std::vector<char> fits(pairs.size(), 0);

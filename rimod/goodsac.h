@@ -10,15 +10,14 @@
 namespace rimod {
 
 struct GoodsacParams {
-  int max_correspondences = 200;     // n of the paper: the best ones that triples are made of; >= 3
+  int max_correspondences = 200;  // n of the paper: the best ones that triples are made of; >= 3
   // m, of a scene feature's correspondences only the best is kept of those whose model features lie
   // nearer to each other than this: one place seen in several views counts once; 0 = all are kept
   double min_model_spacing = 0.0;
-  int max_matches_a_feature = 0;  // best correspondences kept of a scene feature; 0 = all of them
-  int max_trials = 20000;            // transformations computed for a model; >= 1
-  int max_triples = 1500000;        // triples looked at, most of them rejected early; >= 1
-  double min_separation = 0.1;       // m, between the features of a triple; >= 0
-  double distance_tolerance = 0.05;  // m, a distance in the scene against the model's; > 0
+  int max_trials = 20000;             // transformations computed for a model; >= 1
+  int max_triples = 1500000;          // triples looked at, most of them rejected early; >= 1
+  double min_separation = 0.1;        // m, between the features of a triple; >= 0
+  double distance_tolerance = 0.05;   // m, a distance in the scene against the model's; > 0
   double min_triangle_height = 0.05;  // m, triples on a line are left out; >= 0
   double min_normal_cosine =
       0.8;  // normals after the transformation against the scene's; -1 .. 1, -1 = not tested

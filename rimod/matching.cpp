@@ -41,12 +41,11 @@ std::vector<Correspondence> MatchFeatures(const std::vector<Feature>& scene,
   params.Validate();
   std::vector<std::vector<DescriptorMatch>> matches(scene.size());
   execution.parallel_for(scene.size(), [&](std::size_t i) {
-    matches[i] = index.FindNear(scene[i].descriptor, params.max_matches,
-                                params.max_descriptor_distance, params.max_checks,
-                                params.min_shared_cells);
+    matches[i] =
+        index.FindNear(scene[i].descriptor, params.max_matches, params.max_descriptor_distance,
+                       params.max_checks, params.min_shared_cells);
     if (params.min_roughness <= 0.0) return;
-    const double scale =
-        1.0 / std::max(Roughness(scene[i].descriptor), params.min_roughness);
+    const double scale = 1.0 / std::max(Roughness(scene[i].descriptor), params.min_roughness);
     for (DescriptorMatch& match : matches[i]) match.distance *= scale;
   });
   std::vector<Correspondence> correspondences;

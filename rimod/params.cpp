@@ -3,6 +3,69 @@
 #include "rimod/check.h"
 
 namespace rimod {
+namespace {
+
+// The paper's method with the deviations that make it work (docs/algorithm.md). Each stage is set
+// in full, so that the defaults may go their own way.
+PipelineParams PaperParams() {
+  PipelineParams params;
+  params.method = Method::kPaper;
+
+  params.interest_points.measure = InterestMeasure::kSurfaceChange;
+  params.interest_points.max_points = 1200;
+  params.interest_points.max_depth_jump = 0.3;
+  params.interest_points.bend_step = 0.05;
+  params.interest_points.min_strength = 1e-6;
+  params.interest_points.suppression_radius = 0.05;
+  params.range_patch.resolution = 8;
+  params.range_patch.support_size = 0.35;
+  params.range_patch.normal_radius = 0.1;
+  params.range_patch.mask_empty_cells = true;
+  params.model_views.azimuths = 12;
+  params.model_views.elevations = 2;
+  params.model_views.min_elevation = 0.09;
+  params.model_views.max_elevation = 0.6;
+  params.model_views.distance = 2.5;
+  params.model_views.validation_points = 100;
+
+  params.matching.max_descriptor_distance = 0.05;
+  params.matching.max_matches = 60;
+  params.matching.max_checks = 800;
+  params.matching.min_shared_cells = 24;
+  params.matching.min_roughness = 0.01;
+  params.goodsac.max_correspondences = 3000;
+  params.goodsac.min_model_spacing = 0.05;
+  params.goodsac.max_trials = 20000;
+  params.goodsac.max_triples = 10'000'000;
+  params.goodsac.min_separation = 0.1;
+  params.goodsac.distance_tolerance = 0.05;
+  params.goodsac.min_triangle_height = 0.05;
+  params.goodsac.min_normal_cosine = 0.8;
+  params.goodsac.max_tilt = 0.35;
+  params.goodsac.angle_tolerance = 0.5;
+  params.goodsac.height_tolerance = 0.05;
+  params.goodsac.max_poses_a_correspondence = 5;
+
+  params.scoring.epsilon = 0.1;
+  params.scoring.penalty = 1.0;
+  params.scoring.no_return_penalty = 0.5;
+  params.scoring.window = 1;
+  params.scoring.gamma = 0.3;
+  params.pruning.radius = 0.3;
+  params.collisions.cell = 0.05;
+  params.collisions.max_share = 0.15;
+  params.validation.scoring = params.scoring;
+  params.validation.min_score = 0.55;
+  params.validation.min_pixels = 20;
+  params.validation.before_collisions = true;
+  params.validation.outside_weight = 2.0;
+  params.validation.outside_gap = 2;
+  params.validation.outside_depth = 0.1;
+  params.validation.ground_height = 0.05;
+  return params;
+}
+
+}  // namespace
 
 void PipelineParams::Validate() const {
   sweep.Validate();
@@ -21,9 +84,7 @@ void PipelineParams::Validate() const {
 }
 
 PipelineParams DefaultParams(Method method) {
-  PipelineParams params;
-  params.method = method;
-  return params;
+  return method == Method::kPaper ? PaperParams() : PipelineParams();
 }
 
 }  // namespace rimod

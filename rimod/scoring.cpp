@@ -12,7 +12,6 @@ void ScoringParams::Validate() const {
   CheckWithin("scoring penalty", penalty, 0.0, 1e6);
   CheckWithin("scoring no_return_penalty", no_return_penalty, 0.0, 1e6);
   CheckWithin("scoring window", window, 0, 3);
-  CheckWithin("scoring outside_weight", outside_weight, 0.0, 10.0);
   CheckWithin("scoring gamma", gamma, 0.0, 1.0);
 }
 
@@ -60,28 +59,6 @@ int NearestView(const ObjectModel& model, const Eigen::Isometry3d& T_sensor_obje
   return nearest;
 }
 
-double ShareGoingOn(const RangeImage& image, const ModelView& view,
-                    const Eigen::Isometry3d& T_sensor_object, const ScoringParams& params) {
-  constexpr float kGroundHeight = 0.05f;  // m
-  int compared = 0, going_on = 0;
-  for (const Eigen::Vector3f& p_object : view.outside_points) {
-    if (p_object.z() < kGroundHeight) continue;
-    const Eigen::Vector3d p_sensor = T_sensor_object * p_object.cast<double>();
-    const PixelPosition position = Project(image.grid(), p_sensor);
-    const int row = static_cast<int>(std::floor(position.row));
-    const int column = static_cast<int>(std::floor(position.column));
-    if (!image.grid().Contains(row, column)) continue;
-    const Pixel kind = image.pixel(row, column);
-    if (kind == Pixel::kNeverObserved) continue;
-    const double behind = image.range(row, column) - p_sensor.norm();
-    const bool jump = kind == Pixel::kNoReturn || behind > params.epsilon;
-    if (!jump && behind < -params.epsilon) continue;  // hidden by something nearer
-    ++compared;
-    going_on += !jump;
-  }
-  return compared > 0 ? static_cast<double>(going_on) / compared : 0.0;
-}
-
 double ScorePose(const RangeImage& image, const ObjectModel& model,
                  const Eigen::Isometry3d& T_sensor_object, const ScoringParams& params) {
   const int view = NearestView(model, T_sensor_object);
@@ -95,10 +72,7 @@ double ScorePose(const RangeImage& image, const ObjectModel& model,
     most += score - 1.0;
     if (most < params.gamma * n) return 0.0;
   }
-  const double score = std::max(0.0, sum) / n;  // eq. 2
-  if (params.outside_weight <= 0.0) return score;
-  const double going_on = ShareGoingOn(image, model.views[view], T_sensor_object, params);
-  return std::max(0.0, score - params.outside_weight * going_on);
+  return std::max(0.0, sum) / n;  // eq. 2
 }
 
 }  // namespace rimod

@@ -13,9 +13,6 @@ struct ScoringParams {
   double penalty = 10.0;  // p of eq. 1, for a point that the laser went through; >= 0
   double no_return_penalty = 0.5;  // for a point where the laser came back without a range; >= 0
   int window = 0;      // pixels around the point's own that may fit it; 0 = its own only, .. 3
-  // Weight of the share of the view's outside points at which the scene goes on, subtracted from
-  // the score; 0 .. 10, 0 = not looked at.
-  double outside_weight = 0.0;
   double gamma = 0.3;  // smallest score of a hypothesis (section III-C); 0 .. 1
   void Validate() const;
 };
@@ -32,12 +29,6 @@ double PointScoreInImage(const RangeImage& image, const Eigen::Vector3d& p_senso
 
 // Index of the view whose viewpoint lies nearest to the direction in which the sensor stands.
 int NearestView(const ObjectModel& model, const Eigen::Isometry3d& T_sensor_object);
-
-// Share (0 .. 1) of the points beside a view's silhouette where the scene goes on at their depth
-// (within epsilon), of those that are not hidden and lie higher than 5 cm above the object's bottom:
-// there the object stands on something.
-double ShareGoingOn(const RangeImage& image, const ModelView& view,
-                    const Eigen::Isometry3d& T_sensor_object, const ScoringParams& params);
 
 // Eq. 2: the score of a pose by the validation points of the nearest view, 0 .. 1; 0 for a model
 // without views or a view without points, and as soon as gamma cannot be reached any more.
