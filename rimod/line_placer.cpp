@@ -92,17 +92,21 @@ void LinePlacer::PlaceBeams(const LaserLine& line, const AngleTable& table,
   const double sin_step = std::sin(motion.angle * share_step);
   double cos_turn = std::cos(motion.angle * first_share);
   double sin_turn = std::sin(motion.angle * first_share);
+  std::size_t num_points = placed_.points.size();
+  placed_.points.resize(num_points + end - begin);
   for (std::size_t i = begin; i < end; ++i) {
     const float range = line.ranges[i];
     if (range >= min_range_) {
-      const Eigen::Matrix<double, 3, 2> R =
-          motion.fixed + cos_turn * motion.cosine + sin_turn * motion.sine;
-      const Eigen::Vector3d beam = R.col(0) * table.cosines[i] + R.col(1) * table.sines[i];
+      const Eigen::Vector3d beam =
+          (motion.fixed.col(0) + cos_turn * motion.cosine.col(0) + sin_turn * motion.sine.col(0)) *
+              table.cosines[i] +
+          (motion.fixed.col(1) + cos_turn * motion.cosine.col(1) + sin_turn * motion.sine.col(1)) *
+              table.sines[i];
       if (range < max_range_) {
         const double share = first_share + static_cast<double>(i - begin) * share_step;
         const Eigen::Vector3d p_local =
             motion.position + share * motion.translation + static_cast<double>(range) * beam;
-        placed_.points.emplace_back(p_local.cast<float>());
+        placed_.points[num_points++] = p_local.cast<float>();
       } else {
         placed_.no_return_directions.emplace_back(beam.cast<float>());
       }
@@ -115,6 +119,7 @@ void LinePlacer::PlaceBeams(const LaserLine& line, const AngleTable& table,
     sin_turn = sin_turn * cos_step + cos_turn * sin_step;
     cos_turn = cos_next;
   }
+  placed_.points.resize(num_points);
 }
 
 }  // namespace rimod

@@ -125,14 +125,13 @@ void SweepCollector::EndAt(std::size_t num_lines, const std::string& incomplete_
   if (direction_ == 0) last = first;  // never turned to speak of
   idle_lines_ += static_cast<std::int64_t>(num_lines - (last - first));
   if (last > first) {
-    ended->push_back(MakeSweep(first, last, incomplete_reason));
+    ended->push_back(TakeSweep(first, last, incomplete_reason));
     ++(ended->back().complete() ? complete_sweeps_ : incomplete_sweeps_);
   }
   DropLines(num_lines);
 }
 
-Sweep SweepCollector::MakeSweep(std::size_t first, std::size_t last,
-                                const std::string& reason) const {
+Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::string& reason) {
   Sweep sweep;
   sweep.begin = lines_[first].begin;
   sweep.end = lines_[last - 1].end;
@@ -152,22 +151,31 @@ Sweep SweepCollector::MakeSweep(std::size_t first, std::size_t last,
     sweep.incomplete_reason = Format("%.0f of %.0f lines are missing", sweep.num_missing_lines,
                                      sweep.num_lines + sweep.num_missing_lines);
   } else {
-    sweep.scan = MakeScan(first, last);
+    sweep.scan = TakeScan(first, last);
   }
   return sweep;
 }
 
-Scan SweepCollector::MakeScan(std::size_t first, std::size_t last) const {
+Scan SweepCollector::TakeScan(std::size_t first, std::size_t last) {
+  Scan scan;
+  scan.T_local_sensor = SensorPose(first, last);
+  if (first == 0 && last == lines_.size()) {  // all there is: no copy
+    scan.points = std::move(points_);
+    scan.no_return_directions = std::move(no_return_directions_);
+    return scan;
+  }
   const auto end_of = [&](std::size_t Line::*start, std::size_t all) {
     return last < lines_.size() ? lines_[last].*start : all;
   };
-  Scan scan;
   scan.points.assign(points_.begin() + lines_[first].first_point,
                      points_.begin() + end_of(&Line::first_point, points_.size()));
   scan.no_return_directions.assign(
       no_return_directions_.begin() + lines_[first].first_no_return,
       no_return_directions_.begin() + end_of(&Line::first_no_return, no_return_directions_.size()));
+  return scan;
+}
 
+Eigen::Isometry3d SweepCollector::SensorPose(std::size_t first, std::size_t last) const {
   // Means relative to the first line, so that a sensor at rest keeps its position exactly.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   Eigen::Vector3d forward = Eigen::Vector3d::Zero();
@@ -183,8 +191,7 @@ Scan SweepCollector::MakeScan(std::size_t first, std::size_t last) const {
   T_local_forward.linear() =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), forward).toRotationMatrix();
   T_local_forward.translation() = lines_[first].position + offset / num_lines;
-  scan.T_local_sensor = LevelPose(T_local_forward);
-  return scan;
+  return LevelPose(T_local_forward);
 }
 
 void SweepCollector::DropLines(std::size_t num_lines) {

@@ -48,8 +48,10 @@ class SweepCollector {
   bool LineRests(const Line& line) const;
   void EndAt(std::size_t num_lines, const std::string& incomplete_reason,
              std::vector<Sweep>* ended);
-  Sweep MakeSweep(std::size_t first, std::size_t last, const std::string& reason) const;
-  Scan MakeScan(std::size_t first, std::size_t last) const;
+  // Of the lines [first, last); may leave the lists of points empty.
+  Sweep TakeSweep(std::size_t first, std::size_t last, const std::string& reason);
+  Scan TakeScan(std::size_t first, std::size_t last);
+  Eigen::Isometry3d SensorPose(std::size_t first, std::size_t last) const;
   void DropLines(std::size_t num_lines);
 
   SweepParams params_;
