@@ -8,7 +8,7 @@ packages=(
   g++ make cmake pkg-config git
   # libraries
   libeigen3-dev libnanoflann-dev libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
-  libembree-dev libassimp-dev libcli11-dev libspdlog-dev libyaml-cpp-dev nlohmann-json3-dev
+  libembree-dev libcli11-dev libspdlog-dev libyaml-cpp-dev nlohmann-json3-dev
   zlib1g-dev liblzf-dev
   # LCM and its viewers
   liblcm-dev libglib2.0-dev liblcm-bin liblcm-java libjchart2d-java openjdk-17-jdk-headless openjdk-17-jre

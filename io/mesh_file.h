@@ -15,9 +15,10 @@ struct MeshResult {
   std::int64_t dropped_triangles = 0;  // left out: no area, or a corner that is not finite
 };
 
-// Reads .stl, .obj or .ply through Assimp, all its parts joined, node
-// transforms applied, polygons cut into triangles. Units are taken as metres. Every triangle of the
-// result has an area and finite corners; there is at least one.
+// Reads .stl (text or binary), .obj or .ply, told by the ending; all parts joined, polygons cut
+// into triangles, units taken as metres. Every triangle of the result has an area and finite
+// corners; there is at least one, and no vertex is unused. Indices of vertices that are not there
+// are an error.
 MeshResult ReadMesh(const std::string& path);
 
 }  // namespace rimod

@@ -1,48 +1,11 @@
 #include <algorithm>
 #include <array>
 
-#include "io/ply_header.h"
+#include "io/ply_numbers.h"
 #include "io/point_cloud_parsers.h"
 
 namespace rimod {
 namespace {
-
-// Reads the numbers after the header one after the other, text or binary alike.
-class PlyNumbers {
- public:
-  PlyNumbers(PlyEncoding encoding, std::string_view data)
-      : encoding_(encoding), data_(data), text_(data) {}
-
-  // The next number; nothing at the end or where there is something else.
-  std::optional<double> Next(const NumberFormat& format) {
-    if (encoding_ == PlyEncoding::kAscii) {
-      const std::optional<std::string_view> word = text_.NextWord();
-      return word ? ParseNumber(*word) : std::nullopt;
-    }
-    const auto size = static_cast<std::size_t>(format.size);
-    if (data_.size() - position_ < size) return std::nullopt;
-    const ByteOrder order =
-        encoding_ == PlyEncoding::kLittleEndian ? ByteOrder::kLittle : ByteOrder::kBig;
-    const double value = ReadNumber(data_.data() + position_, format, order);
-    position_ += size;
-    return value;
-  }
-
- private:
-  PlyEncoding encoding_;
-  std::string_view data_;
-  std::size_t position_ = 0;  // binary
-  TextCursor text_;
-};
-
-bool SkipList(const PlyProperty& property, PlyNumbers* numbers) {
-  const std::optional<double> length = numbers->Next(property.length_format);
-  if (!length || !(*length >= 0.0)) return false;
-  for (double i = 0.0; i < *length; ++i) {
-    if (!numbers->Next(property.format)) return false;
-  }
-  return true;
-}
 
 // Where the three wanted properties stand in an element; nothing when one is missing.
 std::optional<std::array<std::size_t, 3>> FindProperties(const PlyElement& element,
@@ -65,7 +28,7 @@ bool ReadRecord(const PlyElement& element, const std::array<std::size_t, 3>& col
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const PlyProperty& property = element.properties[i];
     if (property.is_list) {
-      if (!SkipList(property, numbers)) return false;
+      if (!numbers->NextList(property, nullptr)) return false;
       continue;
     }
     const std::optional<double> value = numbers->Next(property.format);

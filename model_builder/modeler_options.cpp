@@ -23,7 +23,7 @@ std::unique_ptr<CLI::App> MakeModelerApp(ModelerCommandLine* command_line) {
   AddCommonOptions(app.get(), &command_line->common);
   AddBusOptions(app.get(), &options.bus);
   AddThreadsOption(app.get(), &options.num_threads);
-  CLI::Option_group* const source = app->add_option_group("Source", "One of");
+  CLI::Option_group* const source = app->add_option_group("Source", "What the model is built from");
   source
       ->add_option("--recording", options.recording,
                    "Scans round the object: a folder with model.json and scan_*.pcd")
