@@ -193,7 +193,6 @@ ValidationParams Validation() {
   params.scoring.penalty = 10.0;
   params.scoring.no_return_penalty = 0.5;
   params.scoring.window = 0;
-  params.scoring.outside_weight = 0.0;
   params.min_pixels = 20;
   params.outside_weight = 0.0;
   params.outside_gap = 2;

@@ -39,7 +39,6 @@ GoodsacParams Lenient() {
   params.min_normal_cosine = -1.0;
   params.max_tilt = M_PI;
   params.min_model_spacing = 0.0;
-  params.max_matches_a_feature = 0;
   params.angle_tolerance = M_PI;
   params.height_tolerance = 1000.0;
   params.max_poses_a_correspondence = 0;
@@ -273,9 +272,6 @@ TEST(CandidatePosesTest, ASceneFeaturesWorseMatchesAreLeftOutWhenTold) {
   }
   EXPECT_GT(given.Poses(Lenient()).size(), alone);
   GoodsacParams params = Lenient();
-  params.max_matches_a_feature = 1;
-  EXPECT_EQ(given.Poses(params).size(), alone);
-  params = Lenient();
   params.min_model_spacing = 0.03;
   EXPECT_EQ(given.Poses(params).size(), alone);
   params.min_model_spacing = 0.01;

@@ -18,7 +18,6 @@ ScoringParams Params() {
   params.penalty = 10.0;
   params.no_return_penalty = 0.5;
   params.window = 0;
-  params.outside_weight = 0.0;
   params.gamma = 0.0;
   return params;
 }
@@ -223,47 +222,6 @@ TEST(ScorePoseTest, ScoresBelowGammaMayBeGivenUp) {
   EXPECT_NEAR(ScorePose(Wall(), model, Eigen::Isometry3d::Identity(), params), 0.667, 2e-3);
   params.gamma = 0.7;
   EXPECT_EQ(ScorePose(Wall(), model, Eigen::Isometry3d::Identity(), params), 0.0);
-}
-
-TEST(ShareGoingOnTest, ComparesPointsBesideTheSilhouette) {
-  // The object's frame is the sensor's, raised so that all points are above the object's bottom.
-  const Eigen::Isometry3d T_sensor_object(Eigen::Translation3d(0, 0, -1));
-  ModelView view;
-  const auto add = [&](const Eigen::Vector3d& p_sensor) {
-    view.outside_points.push_back((T_sensor_object.inverse() * p_sensor).cast<float>());
-  };
-  EXPECT_EQ(ShareGoingOn(Wall(), view, T_sensor_object, Params()), 0.0);
-  add(PointAt(2, 3, kDepth));  // the scene goes on
-  EXPECT_EQ(ShareGoingOn(Wall(), view, T_sensor_object, Params()), 1.0);
-  add(PointAt(3, 3, kDepth - 0.5));  // it is farther away: free
-  EXPECT_EQ(ShareGoingOn(Wall(), view, T_sensor_object, Params()), 0.5);
-  add(PointAt(4, 3, kDepth + 0.5));  // hidden: says nothing
-  add(PointAt(-4, 3, kDepth));       // outside: says nothing
-  EXPECT_EQ(ShareGoingOn(Wall(), view, T_sensor_object, Params()), 0.5);
-  RangeImage image = Wall();
-  image.SetNoReturn(2, 3);
-  EXPECT_EQ(ShareGoingOn(image, view, T_sensor_object, Params()), 0.0);
-}
-
-TEST(ShareGoingOnTest, TheGroundThatAnObjectStandsOnDoesNotCount) {
-  ModelView view;
-  view.outside_points = {PointAt(2, 3, kDepth).cast<float>()};
-  view.outside_points[0].z() = 0.01f;  // just above the object's bottom
-  EXPECT_EQ(ShareGoingOn(Wall(), view, Eigen::Isometry3d::Identity(), Params()), 0.0);
-}
-
-TEST(ScorePoseTest, ASceneThatGoesOnCostsItsWeight) {
-  const Eigen::Isometry3d T_sensor_object(Eigen::Translation3d(0, 0, -1));
-  ObjectModel model = ModelOf({});
-  model.views[0].validation_points = {
-      (T_sensor_object.inverse() * PointAt(2, 3, kDepth)).cast<float>()};
-  model.views[0].outside_points = {
-      (T_sensor_object.inverse() * PointAt(2, 5, kDepth)).cast<float>()};
-  ScoringParams params = Params();
-  params.outside_weight = 0.4;
-  EXPECT_NEAR(ScorePose(Wall(), model, T_sensor_object, params), 0.6, 2e-3);
-  params.outside_weight = 3.0;
-  EXPECT_EQ(ScorePose(Wall(), model, T_sensor_object, params), 0.0);
 }
 
 }  // namespace
