@@ -16,13 +16,25 @@ void MoveToObjectFrame(const Eigen::Isometry3d& T_object_sensor, Feature* featur
   feature->normal = (T_object_sensor.linear() * feature->normal.cast<double>()).cast<float>();
 }
 
+// False for the ground that the object stands on in its views.
+bool BelongsToObject(const ObjectModel& model, const PipelineParams& params,
+                     const Feature& feature) {
+  if (params.model_views.ground_margin <= 0.0) return true;
+  const Eigen::Vector3d p = feature.position.cast<double>();
+  const double lowest = model.box_min.z() + params.model_surface.ground_clearance;
+  return p.z() > lowest;
+}
+
 ModelView ComputeView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
                       const PipelineParams& params) {
-  const RangeImage image = RenderView(model, viewpoint, params.range_image.resolution);
+  const RangeImage image =
+      RenderView(model, viewpoint, params.range_image.resolution, params.model_views.ground_margin);
   ModelView view;
   view.viewpoint = viewpoint;
-  view.features = ExtractFeatures(image, params, Execution{}).features;
-  for (Feature& feature : view.features) MoveToObjectFrame(image.T_local_sensor(), &feature);
+  for (Feature& feature : ExtractFeatures(image, params, Execution{}).features) {
+    MoveToObjectFrame(image.T_local_sensor(), &feature);
+    if (BelongsToObject(model, params, feature)) view.features.push_back(std::move(feature));
+  }
   SampleViewPoints(model, params.range_image.resolution, params.model_views, &view);
   return view;
 }

@@ -44,6 +44,26 @@ SphericalGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_ob
   return grid;
 }
 
+RoundedPixel CentredPixel(double range) {
+  const double steps = std::clamp(std::round(range / PixelRounding::kRangeUnit), 1.0,
+                                  double{PixelRounding::kMaxRangeSteps});
+  return {static_cast<std::uint16_t>(steps), 0, 0};
+}
+
+// Range (m) of the ground around the model's box in a direction; 0 where there is none.
+double GroundRange(const ObjectModel& model, const Eigen::Isometry3d& T_object_sensor,
+                   double margin, const Direction& direction) {
+  if (margin <= 0.0) return 0.0;
+  const Eigen::Vector3d beam = T_object_sensor.linear() * UnitVector(direction);
+  const double height = T_object_sensor.translation().z() - model.box_min.z();
+  if (!(beam.z() * height < 0.0)) return 0.0;
+  const double range = -height / beam.z();
+  const Eigen::Vector3d p = T_object_sensor.translation() + range * beam;
+  const bool near = p.x() > model.box_min.x() - margin && p.x() < model.box_max.x() + margin &&
+                    p.y() > model.box_min.y() - margin && p.y() < model.box_max.y() + margin;
+  return near ? range : 0.0;
+}
+
 // Up to count different indices below size, spread evenly by steps of the golden ratio.
 std::vector<std::size_t> SpreadIndices(std::size_t size, int count) {
   constexpr double kGoldenRatio = 0.6180339887498949;
@@ -101,6 +121,7 @@ void ModelViewParams::Validate() const {
   CheckWithin("model_views distance", distance, 0.1, 100.0);
   CheckWithin("model_views validation_points", validation_points, 1, 10000);
   CheckWithin("model_views outside_points", outside_points, 0, 10000);
+  CheckWithin("model_views ground_margin", ground_margin, 0.0, 5.0);
   CheckWithin("model_views outside_gap", outside_gap, 0.005, 0.5);
 }
 
@@ -108,7 +129,7 @@ std::string ModelViewParams::Kind() const {
   std::ostringstream kind;
   kind << "views " << azimuths << " x " << elevations << ' ' << min_elevation << ' '
        << max_elevation << " at " << distance << ' ' << validation_points << ' ' << outside_points
-       << ' ' << outside_gap;
+       << ' ' << outside_gap << " ground " << ground_margin;
   return kind.str();
 }
 
@@ -128,21 +149,28 @@ std::vector<Eigen::Vector3d> Viewpoints(const ObjectModel& model, const ModelVie
   return viewpoints;
 }
 
-RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint,
-                      double resolution) {
+RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint, double resolution,
+                      double ground_margin) {
   const Eigen::Isometry3d T_object_sensor = ViewPose(model, viewpoint);
   const SphericalGrid grid = GridAround(model, T_object_sensor, resolution);
   const RenderedModel rendered = RenderModel(model, T_object_sensor.inverse(), grid);
   RangeImage image(grid, T_object_sensor);
-  for (int row = 0; row < grid.height; ++row)
-    for (int column = 0; column < grid.width; ++column) image.SetNoReturn(row, column);
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const double range = GroundRange(model, T_object_sensor, ground_margin,
+                                       PixelDirection(grid, row + 0.5, column + 0.5));
+      if (range > 0.0) {
+        image.SetMeasured(row, column, CentredPixel(range));
+      } else {
+        image.SetNoReturn(row, column);
+      }
+    }
+  }
   for (int row = 0; row < rendered.height; ++row) {
     for (int column = 0; column < rendered.width; ++column) {
       if (rendered.point(row, column) < 0) continue;
-      const double steps = std::round(rendered.range(row, column) / PixelRounding::kRangeUnit);
-      const double clamped = std::clamp(steps, 1.0, double{PixelRounding::kMaxRangeSteps});
       image.SetMeasured(rendered.first_row + row, rendered.first_column + column,
-                        {static_cast<std::uint16_t>(clamped), 0, 0});
+                        CentredPixel(rendered.range(row, column)));
     }
   }
   return image;

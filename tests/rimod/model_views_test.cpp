@@ -79,7 +79,7 @@ TEST(ViewpointsTest, LargeModelsAreSeenFromFartherAway) {
 
 TEST(RenderViewTest, ShowsTheModelAndNothingElse) {
   for (const Eigen::Vector3d& viewpoint : Viewpoints(Crate(), Params())) {
-    const RangeImage image = RenderView(Crate(), viewpoint, kResolution);
+    const RangeImage image = RenderView(Crate(), viewpoint, kResolution, 0.0);
     EXPECT_NEAR((image.T_local_sensor().translation() - viewpoint).norm(), 0.0, 1e-12);
     EXPECT_GT(image.CountMeasured(), 500);
     for (int row = 0; row < image.height(); ++row) {

@@ -1,0 +1,332 @@
+#include "rimod/evidence.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "rimod/check.h"
+#include "rimod/surface_rendering.h"
+
+namespace rimod {
+namespace {
+
+constexpr float kSurfaceCell = 0.025f;   // m, cells that tell what lies on the surface
+constexpr double kSampleSpacing = 0.03;  // m, of the points for refinement
+
+// Keeps the first point in each cell and side of the surface.
+ObjectModel Thin(const ObjectModel& model, double spacing) {
+  ObjectModel thin;
+  thin.name = model.name;
+  thin.box_min = model.box_min;
+  thin.box_max = model.box_max;
+  thin.point_spacing = spacing;
+  std::map<std::tuple<long, long, long>, std::vector<Eigen::Vector3f>> taken;
+  for (std::size_t i = 0; i < model.points.size(); ++i) {
+    const Eigen::Vector3d cell = model.points[i].cast<double>() / spacing;
+    std::vector<Eigen::Vector3f>& normals =
+        taken[{std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}];
+    constexpr float kSameSide = 0.5f;
+    const bool known = std::any_of(normals.begin(), normals.end(), [&](const Eigen::Vector3f& n) {
+      return n.dot(model.normals[i]) > kSameSide;
+    });
+    if (known) continue;
+    normals.push_back(model.normals[i]);
+    thin.points.push_back(model.points[i]);
+    thin.normals.push_back(model.normals[i]);
+  }
+  return thin;
+}
+
+// Counts over the rendered pixels.
+struct Counts {
+  int rendered = 0, matched = 0, nearly = 0, through = 0, occluded = 0, no_return = 0;
+  int jump = 0, goes_on = 0, hidden = 0, silhouette = 0;
+  double residual = 0.0, cosine = 0.0;
+  int cosines = 0;
+  Eigen::Matrix3f normal_products = Eigen::Matrix3f::Zero();
+};
+
+// One pose compared with the scene.
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const JudgedModel& model, const Eigen::Isometry3d& T_sensor_object,
+             const EvidenceParams& params)
+      : scene_(scene),
+        model_(model),
+        params_(params),
+        T_sensor_object_(T_sensor_object.cast<float>()),
+        T_object_sensor_(T_sensor_object_.inverse()) {
+    const Eigen::Vector3d centre =
+        T_sensor_object * Eigen::Vector3d(0.5 * (model.model().box_min + model.model().box_max));
+    distance_ = centre.norm();
+    pixel_size_ = scene.grid().resolution * distance_;
+    surface_ = &model.Thinned(pixel_size_);
+    rendered_ = RenderModel(*surface_, T_sensor_object, scene.grid());
+  }
+
+  Evidence Gather() {
+    for (int row = 0; row < rendered_.height; ++row) {
+      for (int column = 0; column < rendered_.width; ++column) {
+        if (rendered_.point(row, column) < 0) continue;
+        ComparePixel(row, column);
+      }
+    }
+    Evidence evidence;
+    if (counts_.rendered == 0) return evidence;
+    LookAround();
+    Fill(&evidence.values);
+    std::sort(explained_.begin(), explained_.end());
+    evidence.explained = std::move(explained_);
+    return evidence;
+  }
+
+ private:
+  int ScenePixel(int row, int column) const {
+    const int r = rendered_.first_row + row, c = rendered_.first_column + column;
+    return scene_.grid().Contains(r, c) ? r * scene_.grid().width + c : -1;
+  }
+
+  bool NeighbourMatches(int row, int column, float range, float tolerance) const {
+    for (int r = row - 1; r <= row + 1; ++r) {
+      for (int c = column - 1; c <= column + 1; ++c) {
+        const int pixel = ScenePixel(r, c);
+        if (pixel >= 0 && std::abs(scene_.range(pixel) - range) < tolerance) return true;
+      }
+    }
+    return false;
+  }
+
+  void ComparePixel(int row, int column) {
+    const int pixel = ScenePixel(row, column);
+    const float measured = scene_.range(pixel);
+    if (measured == 0.0f) return;
+    ++counts_.rendered;
+    if (std::isinf(measured)) {
+      ++counts_.no_return;
+      return;
+    }
+    const int surfel = rendered_.point(row, column);
+    const Eigen::Vector3f normal = T_sensor_object_.linear() * surface_->normals[surfel];
+    const Eigen::Vector3f beam = scene_.point(pixel) / measured;
+    // Where the very beam that was measured meets the surface; the pixel's centre may lie a bit
+    // beside.
+    const float cosine = std::max(0.1f, -normal.dot(beam));
+    const float on_plane = -normal.dot(T_sensor_object_ * surface_->points[surfel]) / cosine;
+    const float spacing = static_cast<float>(pixel_size_);
+    const float rendered = rendered_.range(row, column);
+    const float range = std::clamp(on_plane, rendered - spacing, rendered + spacing);
+    const float slope = std::sqrt(1.0f - std::min(cosine * cosine, 1.0f)) / cosine;
+    const float tolerance =
+        std::min(static_cast<float>(params_.max_tolerance),
+                 static_cast<float>(params_.depth_tolerance +
+                                    params_.slope_tolerance * pixel_size_ * slope));
+    const float behind = measured - range;
+    if (std::abs(behind) < tolerance) {
+      ++counts_.matched;
+      counts_.residual += std::abs(behind) / tolerance;
+      explained_.push_back(pixel);
+      const Eigen::Vector3f& scene_normal = scene_.normal(pixel);
+      if (scene_normal.squaredNorm() > 0.0f) {
+        counts_.cosine += scene_normal.dot(normal);
+        ++counts_.cosines;
+      }
+      counts_.normal_products += normal * normal.transpose();
+      CompareSilhouette(row, column, range);
+    } else if (NeighbourMatches(row, column, range, tolerance)) {
+      ++counts_.nearly;
+    } else if (behind > 0.0f) {
+      ++counts_.through;
+    } else {
+      ++counts_.occluded;
+    }
+  }
+
+  // Where the model ends beside a matched pixel: does the scene end, too?
+  void CompareSilhouette(int row, int column, float range) {
+    const int gap =
+        std::max(1, static_cast<int>(std::lround(params_.silhouette_gap / pixel_size_)));
+    constexpr std::array<std::array<int, 2>, 4> kSides = {{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
+    for (const std::array<int, 2>& side : kSides) {
+      if (Rendered(row + side[0], column + side[1])) continue;
+      const int r = row + gap * side[0], c = column + gap * side[1];
+      if (Rendered(r, c)) continue;
+      const int pixel = ScenePixel(r, c);
+      if (pixel < 0 || scene_.range(pixel) == 0.0f) continue;
+      if (!std::isinf(scene_.range(pixel))) {
+        const float height = (T_object_sensor_ * scene_.point(pixel)).z() -
+                             static_cast<float>(model_.model().box_min.z());
+        if (height < params_.support_height) continue;  // what the object stands on
+      }
+      ++counts_.silhouette;
+      const float behind = scene_.range(pixel) - range;
+      if (behind > params_.continue_tolerance) {
+        ++counts_.jump;
+      } else if (behind < -params_.continue_tolerance) {
+        ++counts_.hidden;
+      } else {
+        ++counts_.goes_on;
+      }
+    }
+  }
+
+  bool Rendered(int row, int column) const {
+    return row >= 0 && row < rendered_.height && column >= 0 && column < rendered_.width &&
+           rendered_.point(row, column) >= 0;
+  }
+
+  // Scene points in the object's box, and what it stands on.
+  void LookAround() {
+    const Eigen::Vector3f low = model_.model().box_min.cast<float>();
+    const Eigen::Vector3f high = model_.model().box_max.cast<float>();
+    const float bottom_band = static_cast<float>(params_.support_height);
+    constexpr int kMargin = 3;                 // pixels around the rendered window
+    constexpr float kFootprintMargin = 0.15f;  // m, around the box's bottom
+    for (int row = -kMargin; row < rendered_.height + kMargin; ++row) {
+      for (int column = -kMargin; column < rendered_.width + kMargin; ++column) {
+        const int pixel = ScenePixel(row, column);
+        if (pixel < 0 || scene_.range(pixel) == 0.0f || std::isinf(scene_.range(pixel))) continue;
+        const Eigen::Vector3f p = T_object_sensor_ * scene_.point(pixel);
+        const bool above =
+            p.x() > low.x() - kFootprintMargin && p.x() < high.x() + kFootprintMargin &&
+            p.y() > low.y() - kFootprintMargin && p.y() < high.y() + kFootprintMargin;
+        constexpr float kUpright = 0.8f;
+        if (above && std::abs(p.z() - low.z()) < bottom_band && scene_.normal(pixel).z() > kUpright)
+          ++support_points_;
+        const bool inside = (p.array() > low.array()).all() && (p.array() < high.array()).all() &&
+                            p.z() > low.z() + bottom_band;
+        if (!inside) continue;
+        ++box_points_;
+        if (!model_.OnSurface(p)) ++unexplained_points_;
+      }
+    }
+  }
+
+  static double Share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+
+  double Relief() const {
+    if (explained_.size() < 3) return 0.0;
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    for (const int pixel : explained_) mean += scene_.point(pixel);
+    mean /= static_cast<float>(explained_.size());
+    Eigen::Matrix3f products = Eigen::Matrix3f::Zero();
+    for (const int pixel : explained_) {
+      const Eigen::Vector3f offset = scene_.point(pixel) - mean;
+      products += offset * offset.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+    solver.computeDirect(products);
+    const Eigen::Vector3f normal = solver.eigenvectors().col(0);
+    constexpr float kOffPlane = 0.04f;  // m
+    const auto off = std::count_if(explained_.begin(), explained_.end(), [&](int pixel) {
+      return std::abs(normal.dot(scene_.point(pixel) - mean)) > kOffPlane;
+    });
+    return Share(static_cast<double>(off), static_cast<double>(explained_.size()));
+  }
+
+  void Fill(std::array<double, kEvidenceCount>* values) const {
+    std::array<double, kEvidenceCount>& v = *values;
+    const double n = counts_.rendered;
+    v[kMatched] = counts_.matched / n;
+    v[kNearlyMatched] = counts_.nearly / n;
+    v[kSeenThrough] = counts_.through / n;
+    v[kOccluded] = counts_.occluded / n;
+    v[kNoReturnShare] = counts_.no_return / n;
+    const double fits = counts_.matched + 0.5 * counts_.nearly;
+    v[kMatchedOfKnown] = Share(fits, fits + counts_.through + counts_.no_return);
+    v[kResidual] = Share(counts_.residual, counts_.matched);
+    v[kNormalAgreement] = Share(counts_.cosine, counts_.cosines);
+    v[kSilhouetteJump] = Share(counts_.jump, counts_.silhouette);
+    v[kSilhouetteContinues] = Share(counts_.goes_on, counts_.silhouette);
+    v[kSilhouetteOccluded] = Share(counts_.hidden, counts_.silhouette);
+    v[kSilhouetteKnown] = Share(counts_.jump, counts_.jump + counts_.goes_on);
+    v[kUnexplained] = Share(unexplained_points_, box_points_);
+    constexpr int kSupportPoints = 5;
+    v[kSupported] = support_points_ >= kSupportPoints ? 1.0 : 0.0;
+    v[kLogMatchedPixels] = std::log1p(counts_.matched);
+    v[kLogRenderedPixels] = std::log1p(counts_.rendered);
+    v[kDistance] = distance_;
+    v[kTilt] = std::acos(std::clamp(T_sensor_object_.linear()(2, 2), -1.0f, 1.0f));
+    if (counts_.matched > 0) {
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+      solver.computeDirect(counts_.normal_products / static_cast<float>(counts_.matched));
+      v[kSecondNormal] = solver.eigenvalues()(1);
+      v[kThirdNormal] = solver.eigenvalues()(0);
+    }
+    v[kRelief] = Relief();
+  }
+
+  const Scene& scene_;
+  const JudgedModel& model_;
+  const EvidenceParams& params_;
+  const Eigen::Isometry3f T_sensor_object_;
+  const Eigen::Isometry3f T_object_sensor_;
+  const ObjectModel* surface_ = nullptr;
+  double distance_ = 0.0;    // m, to the object's centre
+  double pixel_size_ = 0.0;  // m, at that distance
+  RenderedModel rendered_;
+  Counts counts_;
+  int support_points_ = 0, box_points_ = 0, unexplained_points_ = 0;
+  std::vector<int> explained_;
+};
+
+}  // namespace
+
+void EvidenceParams::Validate() const {
+  CheckWithin("evidence depth_tolerance", depth_tolerance, 1e-3, 1.0);
+  CheckWithin("evidence slope_tolerance", slope_tolerance, 0.0, 10.0);
+  CheckWithin("evidence max_tolerance", max_tolerance, depth_tolerance, 10.0);
+  CheckWithin("evidence silhouette_gap", silhouette_gap, 1e-3, 1.0);
+  CheckWithin("evidence continue_tolerance", continue_tolerance, 1e-3, 10.0);
+  CheckWithin("evidence support_height", support_height, 1e-3, 1.0);
+}
+
+JudgedModel::JudgedModel(const ObjectModel& model) : model_(&model) {
+  const ObjectModel thin = Thin(model, std::max(kSampleSpacing, model.point_spacing));
+  for (std::size_t i = 0; i < thin.points.size(); ++i) {
+    sample_.points.push_back(thin.points[i]);
+    sample_.normals.push_back(thin.normals[i]);
+  }
+  for (const double factor : {1.6, 2.5, 4.0})
+    thinned_.push_back(Thin(model, factor * model.point_spacing));
+
+  grid_origin_ = model.box_min.cast<float>().array() - 2 * kSurfaceCell;
+  const Eigen::Vector3d extent = (model.box_max - model.box_min) / kSurfaceCell;
+  for (int d = 0; d < 3; ++d) grid_size_[d] = static_cast<int>(std::min(extent[d], 400.0)) + 5;
+  near_surface_.assign(static_cast<std::size_t>(grid_size_[0]) * grid_size_[1] * grid_size_[2], 0);
+  for (const Eigen::Vector3f& point : model.points) {
+    const Eigen::Vector3i cell =
+        ((point - grid_origin_) / kSurfaceCell).array().floor().cast<int>();
+    for (int x = cell.x() - 1; x <= cell.x() + 1; ++x)
+      for (int y = cell.y() - 1; y <= cell.y() + 1; ++y)
+        for (int z = cell.z() - 1; z <= cell.z() + 1; ++z)
+          if (x >= 0 && x < grid_size_[0] && y >= 0 && y < grid_size_[1] && z >= 0 &&
+              z < grid_size_[2])
+            near_surface_[(static_cast<std::size_t>(x) * grid_size_[1] + y) * grid_size_[2] + z] =
+                1;
+  }
+}
+
+const ObjectModel& JudgedModel::Thinned(double pixel_size) const {
+  const ObjectModel* best = model_;
+  for (const ObjectModel& thin : thinned_)
+    if (thin.point_spacing <= pixel_size) best = &thin;
+  return *best;
+}
+
+bool JudgedModel::OnSurface(const Eigen::Vector3f& p_object) const {
+  const Eigen::Vector3i cell =
+      ((p_object - grid_origin_) / kSurfaceCell).array().floor().cast<int>();
+  if ((cell.array() < 0).any() || (cell.array() >= grid_size_.array()).any()) return false;
+  return near_surface_[(static_cast<std::size_t>(cell[0]) * grid_size_[1] + cell[1]) *
+                           grid_size_[2] +
+                       cell[2]] != 0;
+}
+
+Evidence GatherEvidence(const Scene& scene, const JudgedModel& model,
+                        const Eigen::Isometry3d& T_sensor_object, const EvidenceParams& params) {
+  return Comparison(scene, model, T_sensor_object, params).Gather();
+}
+
+}  // namespace rimod

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "rimod/object_model.h"
+#include "rimod/refinement.h"
+#include "rimod/scene.h"
+
+namespace rimod {
+
+// What speaks for and against an object at a pose, from comparing the scene with the rendered model
+// at full resolution. Goes past the paper's section III-D, which uses the score of eq. 2 alone.
+
+struct EvidenceParams {
+  double depth_tolerance =
+      0.03;  // m, measured against rendered depth on a surface seen head-on; > 0
+  double slope_tolerance = 0.25;  // of a pixel's size times the surface's slope, added to it; >= 0
+  double max_tolerance = 0.10;    // m, on surfaces seen at a flat angle; >= depth_tolerance
+  double silhouette_gap = 0.03;   // m, how far beside the silhouette is looked; > 0
+  double continue_tolerance = 0.06;  // m, a surface going on past the silhouette; > 0
+  double support_height = 0.04;      // m, around the object's bottom; > 0
+  void Validate() const;
+};
+
+// Names of the figures, in the order of Evidence::values.
+enum EvidenceIndex {
+  kMatched,              // share of the rendered pixels that are measured at the model's depth
+  kNearlyMatched,        // share where only a neighbouring pixel is
+  kSeenThrough,          // share where the laser went through
+  kOccluded,             // share with something in front
+  kNoReturnShare,        // share without a return
+  kMatchedOfKnown,       // matched and nearly matched of those neither occluded nor unknown
+  kResidual,             // mean absolute depth difference of matched pixels over the tolerance
+  kNormalAgreement,      // mean cosine of the angle between measured and model normals
+  kSilhouetteJump,       // share of the silhouette behind which the scene lies deeper
+  kSilhouetteContinues,  // share past which the surface goes on
+  kSilhouetteOccluded,   // share hidden by something in front
+  kSilhouetteKnown,      // share of jump among jump and continue
+  kUnexplained,          // scene points in the object's box that are not on its surface, share
+  kSupported,            // 1: a horizontal surface is seen around the bottom
+  kLogMatchedPixels,     // natural logarithm of 1 + matched pixels
+  kLogRenderedPixels,    // of 1 + rendered pixels
+  kDistance,             // m
+  kTilt,                 // rad, of the object's z-axis
+  kSecondNormal,  // spread of the matched normals: second eigenvalue of their products, 0 .. 0.5
+  kThirdNormal,   // third eigenvalue, 0 .. 0.33
+  kRelief,        // share of matched pixels that lie off the plane through all matched ones
+  kEvidenceCount
+};
+
+struct Evidence {
+  std::array<double, kEvidenceCount> values{};
+  std::vector<int> explained;  // pixels of the scene that the object explains, rising
+};
+
+// A model's surface for judging poses: thinned, and which space it fills.
+class JudgedModel {
+ public:
+  explicit JudgedModel(const ObjectModel& model);
+
+  const ObjectModel& model() const { return *model_; }
+  // About evenly thinned to the spacing (m), for refinement.
+  const SurfaceSample& sample() const { return sample_; }
+  // Model whose points are thinned so far that their discs still close the surface for pixels of
+  // this size (m).
+  const ObjectModel& Thinned(double pixel_size) const;
+  // Whether a point (object frame) lies on the surface, to about 3 cm; outside the box: false.
+  bool OnSurface(const Eigen::Vector3f& p_object) const;
+
+ private:
+  const ObjectModel* model_;
+  SurfaceSample sample_;
+  std::vector<ObjectModel> thinned_;  // by rising spacing; the first is the model itself
+  Eigen::Vector3f grid_origin_;
+  Eigen::Vector3i grid_size_;
+  std::vector<std::uint8_t> near_surface_;
+};
+
+// Evidence for a pose. No pixel rendered: all zero, nothing explained.
+Evidence GatherEvidence(const Scene& scene, const JudgedModel& model,
+                        const Eigen::Isometry3d& T_sensor_object, const EvidenceParams& params);
+
+}  // namespace rimod

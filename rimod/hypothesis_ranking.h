@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "rimod/object_model.h"
+#include "rimod/refinement.h"
+#include "rimod/scene.h"
+
+namespace rimod {
+
+// Fast scoring of very many pose hypotheses with the validation points of the nearest view (paper,
+// section III-C) and its outside points, for sorting out all but the best.
+
+struct RankingParams {
+  double coarse_epsilon =
+      0.12;                    // m, depth difference of a point at its place before refinement; > 0
+  double fine_epsilon = 0.05;  // m, after it; > 0
+  double see_through = 1.0;    // what a point costs that the laser went through; >= 0
+  double outside = 1.0;        // what an outside point costs where the surface goes on; >= 0
+  int first_points = 20;       // looked at first; hopeless hypotheses are given up then; >= 1
+  double first_min_share = 0.25;  // of them must be at their place; 0 .. 1
+  double pixels_half = 60.0;      // pixels of the object that make a score count half; >= 0
+  void Validate() const;
+};
+
+// A view's points as the scoring and refinement want them.
+struct RankingView {
+  Eigen::Vector3f direction =
+      Eigen::Vector3f::Zero();  // unit, from the model's centre, object frame
+  SurfaceSample surface;
+  std::vector<Eigen::Vector3f> outside;
+  double area_share = 0.0;  // of the visible surface's solid angle times distance squared, m^2
+};
+
+struct RankingModel {
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  std::vector<RankingView> views;
+};
+
+RankingModel MakeRankingModel(const ObjectModel& model);
+
+// The view nearest to where the sensor stands; -1 without views.
+int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object);
+
+// Score of a pose, at most 1: points at their place, less those that were looked through and
+// outside points where the surface goes on; a small number of pixels counts less. 0 for hopeless
+// ones.
+double RankingScore(const Scene& scene, const RankingModel& model,
+                    const Eigen::Isometry3f& T_sensor_object, double epsilon,
+                    const RankingParams& params);
+
+}  // namespace rimod

@@ -1,0 +1,131 @@
+#include "rimod/refinement.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "rimod/check.h"
+
+namespace rimod {
+namespace {
+
+using Vector6f = Eigen::Matrix<float, 6, 1>;
+using Matrix6f = Eigen::Matrix<float, 6, 6>;
+
+// The scene point nearest to p among the 3 x 3 pixels around where it falls, nearer than gate; -1:
+// none.
+int PairedPixel(const Scene& scene, const Eigen::Vector3f& p, float gate) {
+  const int own = scene.PixelOf(p);
+  if (own < 0) return -1;
+  const int width = scene.grid().width;
+  const int row = own / width, column = own % width;
+  int paired = -1;
+  float best_sq = gate * gate;
+  for (int r = row - 1; r <= row + 1; ++r) {
+    for (int c = column - 1; c <= column + 1; ++c) {
+      if (!scene.grid().Contains(r, c) || !scene.image().measured(r, c)) continue;
+      const float distance_sq = (scene.point(r * width + c) - p).squaredNorm();
+      if (distance_sq >= best_sq) continue;
+      best_sq = distance_sq;
+      paired = r * width + c;
+    }
+  }
+  return paired;
+}
+
+// Normal equations of sum w (n . (q - p - omega x (p - centre) - v))^2.
+struct Equations {
+  Matrix6f A = Matrix6f::Zero();
+  Vector6f b = Vector6f::Zero();
+  int count = 0;
+};
+
+Equations Linearise(const Scene& scene, const SurfaceSample& surface,
+                    const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& centre,
+                    float gate) {
+  Equations equations;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    const Eigen::Vector3f p = T_sensor_object * surface.points[i];
+    const Eigen::Vector3f n = T_sensor_object.linear() * surface.normals[i];
+    if (n.dot(p) > 0.0f) continue;  // faces away
+    const int pixel = PairedPixel(scene, p, gate);
+    if (pixel < 0) continue;
+    constexpr float kMinCosine = 0.5f;  // between the normals: 60 degrees
+    const Eigen::Vector3f& scene_normal = scene.normal(pixel);
+    if (scene_normal.squaredNorm() > 0.0f && scene_normal.dot(n) < kMinCosine) continue;
+    const Eigen::Vector3f apart = scene.point(pixel) - p;
+    const float residual = n.dot(apart);
+    const float share = apart.squaredNorm() / (gate * gate);
+    const float weight = (1.0f - share) * (1.0f - share);  // Tukey's
+    const Eigen::Vector3f arm = p - centre;
+    Vector6f jacobian;
+    jacobian << arm.y() * n.z() - arm.z() * n.y(), arm.z() * n.x() - arm.x() * n.z(),
+        arm.x() * n.y() - arm.y() * n.x(), n.x(), n.y(), n.z();
+    equations.A.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    equations.b += weight * residual * jacobian;
+    ++equations.count;
+  }
+  equations.A = equations.A.selfadjointView<Eigen::Lower>();
+  return equations;
+}
+
+// The step, rotation vector and translation; zero in what freedom does not allow.
+Vector6f Solve(Equations equations, Freedom freedom, double damping, double tilt_damping,
+               float radius) {
+  const float count = static_cast<float>(equations.count);
+  const float weight = static_cast<float>(damping) * count;
+  const float tilt_weight = static_cast<float>(tilt_damping) * count * radius * radius;
+  Vector6f resistance;
+  resistance << tilt_weight, tilt_weight, weight * radius * radius, weight, weight, weight;
+  equations.A.diagonal() += resistance;
+  if (freedom == Freedom::kAll) return equations.A.ldlt().solve(equations.b);
+  Vector6f step = Vector6f::Zero();
+  const Eigen::Matrix4f A = equations.A.bottomRightCorner<4, 4>();
+  const Eigen::Vector4f b = equations.b.tail<4>();
+  step.tail<4>() = A.ldlt().solve(b);
+  return step;
+}
+
+}  // namespace
+
+void RefinementParams::Validate() const {
+  CheckWithin("refinement coarse_iterations", coarse_iterations, 0, 100);
+  CheckWithin("refinement fine_iterations", fine_iterations, 0, 100);
+  CheckWithin("refinement coarse_gate", coarse_gate, 1e-3, 10.0);
+  CheckWithin("refinement fine_gate", fine_gate, 1e-3, 10.0);
+  CheckWithin("refinement damping", damping, 1e-6, 10.0);
+  CheckWithin("refinement tilt_damping", tilt_damping, 1e-6, 1e6);
+}
+
+Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
+                             const Eigen::Isometry3f& T_sensor_object, Freedom freedom,
+                             int iterations, double first_gate, double last_gate, double damping,
+                             double tilt_damping) {
+  if (surface.points.empty()) return T_sensor_object;
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& point : surface.points) middle += point;
+  middle /= static_cast<float>(surface.points.size());
+  float radius = 0.0f;
+  for (const Eigen::Vector3f& point : surface.points)
+    radius = std::max(radius, (point - middle).norm());
+
+  Eigen::Isometry3f T = T_sensor_object;
+  for (int i = 0; i < iterations; ++i) {
+    const double progress = iterations > 1 ? static_cast<double>(i) / (iterations - 1) : 1.0;
+    const float gate = static_cast<float>(first_gate * std::pow(last_gate / first_gate, progress));
+    const Eigen::Vector3f centre = T * middle;
+    const Equations equations = Linearise(scene, surface, T, centre, gate);
+    constexpr int kMinPairs = 6;  // as many as degrees of freedom
+    if (equations.count < kMinPairs) break;
+    const Vector6f step = Solve(equations, freedom, damping, tilt_damping, radius);
+    if (!step.allFinite()) break;
+    const float angle = step.head<3>().norm();
+    Eigen::Isometry3f move = Eigen::Isometry3f::Identity();
+    if (angle > 1e-9f)
+      move.linear() = Eigen::AngleAxisf(angle, step.head<3>() / angle).toRotationMatrix();
+    move.translation() = centre + step.tail<3>() - move.linear() * centre;
+    T = move * T;
+  }
+  return T;
+}
+
+}  // namespace rimod

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "rimod/scene.h"
+
+namespace rimod {
+
+// A piece of a model's surface: unit normals, object frame, m.
+struct SurfaceSample {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<Eigen::Vector3f> normals;
+};
+
+struct RefinementParams {
+  int coarse_iterations = 6;  // of every candidate, upright (4 degrees of freedom); 0 .. 100
+  int fine_iterations = 6;    // of the best candidates, all degrees of freedom; 0 .. 100
+  double coarse_gate = 0.15;  // m, farther pairs are left out at first ..; > 0
+  double fine_gate = 0.05;    // m, .. and in the end; > 0
+  double damping = 0.02;      // of the points' number, keeps what they do not determine; > 0
+  double tilt_damping = 0.3;  // the same for the tilt from the vertical; > 0
+  void Validate() const;
+};
+
+enum class Freedom { kUpright, kAll };  // heading and position, or all six degrees of freedom
+
+// Projective point-to-plane ICP: each surface point facing the sensor is paired with the nearest
+// scene point of the 3 x 3 pixels where it falls; the pose moves along the surface's normals. The
+// gate shrinks from first_gate to last_gate (m) over the iterations.
+Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
+                             const Eigen::Isometry3f& T_sensor_object, Freedom freedom,
+                             int iterations, double first_gate, double last_gate, double damping,
+                             double tilt_damping);
+
+}  // namespace rimod

@@ -1,0 +1,98 @@
+#include "rimod/scene.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rimod {
+namespace {
+
+// atan(t) for 0 <= t <= 1, error below 2e-6 rad (polynomial in t^2, minimax).
+float AtanUnit(float t) {
+  const float t2 = t * t;
+  float sum = -0.0117212f;
+  sum = sum * t2 + 0.05265332f;
+  sum = sum * t2 - 0.11643287f;
+  sum = sum * t2 + 0.19354346f;
+  sum = sum * t2 - 0.33262347f;
+  sum = sum * t2 + 0.99997726f;
+  return t * sum;
+}
+
+float FastAtan2(float y, float x) {
+  constexpr float kPi = 3.14159265f;
+  const float ax = std::abs(x), ay = std::abs(y);
+  const float larger = std::max(ax, ay), smaller = std::min(ax, ay);
+  float angle = larger > 0.0f ? AtanUnit(smaller / larger) : 0.0f;
+  if (ay > ax) angle = 0.5f * kPi - angle;
+  if (x < 0.0f) angle = kPi - angle;
+  return y < 0.0f ? -angle : angle;
+}
+
+// Normal at a pixel from the pixels around it, as far as radius reaches, at most kMaxReach.
+Eigen::Vector3f NormalOf(const RangeImage& image, int row, int column, float radius) {
+  constexpr int kMaxReach = 6, kSamples = 2;  // pixels; looks at (2 * kSamples + 1)^2 of them
+  constexpr int kMinPoints = 5;
+  const Eigen::Vector3f& centre = image.point(row, column);
+  const float pixel = static_cast<float>(image.grid().resolution) * image.range(row, column);
+  const int reach = std::clamp(static_cast<int>(radius / pixel), 1, kMaxReach);
+  const int step = std::max(1, reach / kSamples);
+  const float radius_sq = std::max(radius * radius, 8.0f * pixel * pixel);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f products = Eigen::Matrix3f::Zero();
+  int count = 0;
+  for (int r = row - reach; r <= row + reach; r += step) {
+    for (int c = column - reach; c <= column + reach; c += step) {
+      if (!image.grid().Contains(r, c) || !image.measured(r, c)) continue;
+      const Eigen::Vector3f offset = image.point(r, c) - centre;
+      if (offset.squaredNorm() > radius_sq) continue;
+      sum += offset;
+      products += offset * offset.transpose();
+      ++count;
+    }
+  }
+  if (count < kMinPoints) return Eigen::Vector3f::Zero();
+  const Eigen::Vector3f mean = sum / static_cast<float>(count);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(products / static_cast<float>(count) - mean * mean.transpose());
+  const Eigen::Vector3f normal = solver.eigenvectors().col(0).normalized();
+  if (!normal.allFinite()) return Eigen::Vector3f::Zero();
+  return normal.dot(centre) > 0.0f ? Eigen::Vector3f(-normal) : normal;
+}
+
+}  // namespace
+
+Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution)
+    : image_(image),
+      azimuth_left_(static_cast<float>(image.grid().azimuth_left)),
+      elevation_top_(static_cast<float>(image.grid().elevation_top)),
+      pixels_per_radian_(image.grid().size() > 0 ? static_cast<float>(1.0 / image.grid().resolution)
+                                                 : 0.0f),
+      width_(image.width()),
+      height_(image.height()),
+      ranges_(static_cast<std::size_t>(image.grid().size()), 0.0f),
+      normals_(ranges_.size(), Eigen::Vector3f::Zero()) {
+  execution.parallel_for(static_cast<std::size_t>(height_), [&](std::size_t i) {
+    const int row = static_cast<int>(i);
+    for (int column = 0; column < width_; ++column) {
+      const int pixel = row * width_ + column;
+      if (image_.pixel(row, column) == Pixel::kNoReturn) {
+        ranges_[pixel] = std::numeric_limits<float>::infinity();
+      } else if (image_.measured(row, column)) {
+        ranges_[pixel] = image_.range(row, column);
+        normals_[pixel] = NormalOf(image_, row, column, static_cast<float>(normal_radius));
+      }
+    }
+  });
+}
+
+int Scene::PixelOf(float x, float y, float z) const {
+  const float column = (azimuth_left_ - FastAtan2(y, x)) * pixels_per_radian_;
+  const float row = (elevation_top_ - FastAtan2(z, std::sqrt(x * x + y * y))) * pixels_per_radian_;
+  if (!(row >= 0.0f && column >= 0.0f)) return -1;
+  const int r = static_cast<int>(row), c = static_cast<int>(column);
+  return r < height_ && c < width_ ? r * width_ + c : -1;
+}
+
+}  // namespace rimod
