@@ -5,8 +5,7 @@ namespace rimod {
 // How processes behave on the bus; section `bus` of the configuration.
 struct BusParams {
   double max_megabytes_per_second =
-      20.0;                  // large messages are sent at this rate at most; 0.1 .. 10000
-  int burst_kilobytes = 60;  // sent at once after a rest; 60 .. 100000
+      20.0;  // large messages are sent at this rate at most; 0.1 .. 10000
   int max_waiting_scans =
       1;  // complete scans that wait; further ones push the oldest out; 1 .. 1000
   double idle_time =

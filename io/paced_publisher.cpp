@@ -10,14 +10,18 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMaxQueuedBytes = 256'000'000;  // callers wait beyond
 constexpr auto kFarewell = std::chrono::milliseconds(500);
 
+// Where this thread is woken late, the machine is busy and receivers are woken late too, some
+// later: they get that many times the lateness, measured with lcm-logger beside busy loops
+// (docs/benchmarks.md).
+constexpr int kLatenessFactor = 4;
+constexpr auto kMaxPause = std::chrono::milliseconds(50);
+
 }  // namespace
 
 PacedPublisher::PacedPublisher(lcm::LCM* lcm, const BusParams& params)
     : lcm_(lcm),
       bytes_per_second_(params.max_megabytes_per_second * 1e6),
-      burst_bytes_(params.burst_kilobytes * 1e3),
-      budget_(burst_bytes_),
-      budget_time_(Clock::now()),
+      free_at_(Clock::now()),
       give_up_at_(Clock::time_point::max()),
       thread_([this] { Send(); }) {}
 
@@ -60,12 +64,12 @@ void PacedPublisher::Send() {
     const Item item = std::move(queue_.front());
     queue_.pop_front();
     queued_bytes_ -= item.bytes.size();
-    const auto start = TakeFromBudget(static_cast<double>(item.bytes.size()));
     lock.unlock();
     changed_.notify_all();
-    std::this_thread::sleep_until(start);
+    WaitUntilFree();
     const int status = lcm_->publish(item.channel, item.bytes.data(),
                                      static_cast<unsigned int>(item.bytes.size()));
+    PauseFor(item.bytes.size());
     lock.lock();
     sending_ = false;
     if (status != 0) ++num_failed_;
@@ -75,18 +79,25 @@ void PacedPublisher::Send() {
   changed_.notify_all();
 }
 
-// The budget grows with time up to one burst; a message may go once the budget covers it, or the
-// burst where it is larger than that.
-Clock::time_point PacedPublisher::TakeFromBudget(double bytes) {
+void PacedPublisher::WaitUntilFree() {
   const auto now = Clock::now();
-  const double rest = std::chrono::duration<double>(now - budget_time_).count();
-  budget_ = std::min(burst_bytes_, budget_ + rest * bytes_per_second_);
-  budget_time_ = now;
-  const double missing = std::min(bytes, burst_bytes_) - budget_;
-  budget_ -= bytes;
-  if (missing <= 0.0) return now;
-  return now + std::chrono::duration_cast<Clock::duration>(
-                   std::chrono::duration<double>(missing / bytes_per_second_));
+  if (now >= free_at_) {
+    lateness_ = {};
+    return;
+  }
+  std::this_thread::sleep_until(free_at_);
+  lateness_ = std::max(Clock::now() - free_at_, lateness_ * 4 / 5);
+}
+
+// Counted from the sending itself: a sender that was late must not catch up.
+void PacedPublisher::PauseFor(std::size_t bytes) {
+  const auto at_rate = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(static_cast<double>(bytes) / bytes_per_second_));
+  const bool large = bytes > kSectionBytes / 10;
+  const auto for_receivers = large
+                                 ? std::min<Clock::duration>(kLatenessFactor * lateness_, kMaxPause)
+                                 : Clock::duration{0};
+  free_at_ = Clock::now() + std::max(at_rate, for_receivers);
 }
 
 }  // namespace rimod

@@ -16,8 +16,10 @@
 
 namespace rimod {
 
-// Sends messages in the order given, bursts spread so that receivers with the stock socket buffer
-// lose nothing. Has a thread of its own: callers wait only when very much is queued already.
+// Sends messages in the order given, each followed by a pause as long as its bytes take at the
+// allowed rate, longer on a busy machine, so that receivers with the stock socket buffer lose
+// nothing. Has a thread of its
+// own: callers wait only when very much is queued already.
 class PacedPublisher {
  public:
   PacedPublisher(lcm::LCM* lcm, const BusParams& params);
@@ -47,13 +49,15 @@ class PacedPublisher {
     std::vector<std::uint8_t> bytes;
   };
   void Send();
-  std::chrono::steady_clock::time_point TakeFromBudget(double bytes);  // when it may be sent
+  void WaitUntilFree();
+  void PauseFor(std::size_t bytes);
 
   lcm::LCM* lcm_;
   double bytes_per_second_;
-  double burst_bytes_;
-  double budget_;  // bytes that may be sent at budget_time_
-  std::chrono::steady_clock::time_point budget_time_;
+  std::chrono::steady_clock::time_point free_at_;  // when the next message may be sent
+  // Of the sending thread:
+  std::chrono::steady_clock::duration lateness_{0};  // of waking up, of late
+
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> queue_;

@@ -13,7 +13,6 @@ class PacedPublisherTest : public ::testing::Test {
  protected:
   PacedPublisherTest() : lcm_("memq://") {
     params_.max_megabytes_per_second = 10.0;
-    params_.burst_kilobytes = 100;
     subscription_ = std::make_unique<BytesSubscription>(
         &lcm_, "CHANNEL", 1000, SubscriptionObserver(),
         [this](const void* bytes, std::size_t size) {
