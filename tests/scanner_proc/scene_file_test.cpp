@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "tests/support/temporary_folder.h"
 
@@ -261,6 +262,19 @@ TEST(SceneFileTest, TheSceneIsNamedAfterItsFile) {
   const SceneResult result = ReadText("room: {min: [0, 0, 0], max: [1, 1, 1]}");
   ASSERT_TRUE(result.scene) << result.error;
   EXPECT_EQ(result.scene->name, "scene");
+}
+
+TEST(SceneFileTest, TheScenesThatComeWithTheProjectAreRead) {
+  const std::filesystem::path folder = std::filesystem::path(RIMOD_SOURCE_DIR) / "config/scenes";
+  int num_scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "sick_lms.yaml" || name == "furniture.yaml") continue;  // for others to include
+    const SceneResult result = ReadScene(entry.path().string());
+    EXPECT_TRUE(result.scene) << result.error;
+    ++num_scenes;
+  }
+  EXPECT_GE(num_scenes, 7);
 }
 
 }  // namespace
