@@ -121,11 +121,18 @@ Keys RejectionKeys(PipelineParams* p) {
   return {
       {"pruning", "radius", &p->pruning.radius, "of the model's diameter: only the best hypothesis within is kept; 0 .. 10"},
 
+      {"pose_refinement", "iterations", &p->pose_refinement.iterations, "of ICP for the candidates that pruning leaves; 0 = none .. 100"},
+      {"pose_refinement", "first_gate", &p->pose_refinement.first_gate, "m, farther pairs are left out at first ..; > 0"},
+      {"pose_refinement", "last_gate", &p->pose_refinement.last_gate, "m, .. and in the end; > 0"},
+      {"pose_refinement", "damping", &p->pose_refinement.damping, "of the points' number, keeps what they do not determine; > 0"},
+      {"pose_refinement", "normal_radius", &p->pose_refinement.normal_radius, "m, a scene normal is that of the points this near; 0.01 .. 2"},
+
       {"collisions", "cell", &p->collisions.cell, "m, spacing of the low-resolution clouds; 0.005 .. 1"},
       {"collisions", "max_share", &p->collisions.max_share, "of the smaller cloud's points that may lie in the other; 0 .. 1"},
 
       {"validation", "min_score", &p->validation.min_score, "candidates below are false positives; 0 .. 1"},
       {"validation", "min_pixels", &p->validation.min_pixels, "of the model in the image, fewer say nothing; >= 1"},
+      {"validation", "half_trust_pixels", &p->validation.half_trust_pixels, "pixels of the model at which the score counts half; 0 = it always counts .. 1000000"},
       {"validation", "before_collisions", &p->validation.before_collisions, "candidates are validated before collisions are looked for"},
       {"validation", "outside_weight", &p->validation.outside_weight, "of the silhouette's outside where the scene goes on, subtracted; 0 = not looked at .. 10"},
       {"validation", "outside_gap", &p->validation.outside_gap, "pixels between the silhouette and those compared; 1 .. 10"},
@@ -181,6 +188,7 @@ std::vector<SectionCheck> SectionChecks() {
       {"goodsac", [](C c) { c.pipeline.goodsac.Validate(); }},
       {"scoring", [](C c) { c.pipeline.scoring.Validate(); }},
       {"pruning", [](C c) { c.pipeline.pruning.Validate(); }},
+      {"pose_refinement", [](C c) { c.pipeline.pose_refinement.Validate(); }},
       {"collisions", [](C c) { c.pipeline.collisions.Validate(); }},
       {"validation_scoring", [](C c) { c.pipeline.validation.scoring.Validate(); }},
       {"validation", [](C c) { c.pipeline.validation.Validate(); }},

@@ -5,6 +5,8 @@
 
 #include "rimod/goodsac.h"
 #include "rimod/matching.h"
+#include "rimod/refinement.h"
+#include "rimod/scene.h"
 #include "rimod/scoring.h"
 
 namespace rimod {
@@ -73,6 +75,28 @@ CandidateList ValidateCandidates(const RangeImage& image, const CandidateList& c
   return validated;
 }
 
+CandidateList RefineCandidates(const RangeImage& image, const CandidateList& candidates,
+                               const ModelDatabase& database, const PipelineParams& params,
+                               const Execution& execution) {
+  const StageScope stage(execution, "refinement");
+  const PoseRefinementParams& refinement = params.pose_refinement;
+  const Scene scene(image, refinement.normal_radius, execution);
+  CandidateList refined = candidates;
+  execution.parallel_for(refined.size(), [&](std::size_t i) {
+    const ObjectModel& model = database.models()[refined[i].model];
+    const int view = NearestView(model, refined[i].T_sensor_object);
+    if (view < 0) return;
+    const SurfaceSample surface{model.views[view].validation_points,
+                                model.views[view].validation_normals};
+    refined[i].T_sensor_object =
+        RefinePose(scene, surface, refined[i].T_sensor_object.cast<float>(), Freedom::kAll,
+                   refinement.iterations, refinement.first_gate, refinement.last_gate,
+                   refinement.damping, refinement.damping)
+            .cast<double>();
+  });
+  return refined;
+}
+
 CandidateList WithoutCollisions(const CandidateList& candidates, const ModelDatabase& database,
                                 const PipelineParams& params, const Execution& execution) {
   const StageScope stage(execution, "collisions");
@@ -133,6 +157,8 @@ DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& feature
     std::sort(scored.begin(), scored.end(), BetterCandidate);
     pruned = PruneToLocalBest(scored, database.models(), params.pruning);
   }
+  if (params.pose_refinement.iterations > 0)
+    pruned = RefineCandidates(image, pruned, database, params, execution);
   CandidateList collision_free, validated;
   if (params.validation.before_collisions) {
     validated = ValidateCandidates(image, pruned, database, params, execution);

@@ -135,6 +135,7 @@ void ValidationParams::Validate() const {
   scoring.Validate();
   CheckWithin("validation min_score", min_score, 0.0, 1.0);
   CheckWithin("validation min_pixels", min_pixels, 1, 1'000'000);
+  CheckWithin("validation half_trust_pixels", half_trust_pixels, 0, 1'000'000);
   CheckWithin("validation outside_weight", outside_weight, 0.0, 10.0);
   CheckWithin("validation outside_gap", outside_gap, 1, 10);
   CheckWithin("validation outside_depth", outside_depth, 1e-3, 10.0);
@@ -190,7 +191,7 @@ double ValidatePose(const RangeImage& image, const ObjectModel& model,
     const SilhouetteSurroundings around = LookAround(image, rendered, T_sensor_object, params);
     if (around.compared > 0) score -= params.outside_weight * around.continued / around.compared;
   }
-  return std::max(0.0, score);
+  return std::max(0.0, score) * count / (count + params.half_trust_pixels);
 }
 
 }  // namespace rimod

@@ -67,6 +67,9 @@ struct ValidationParams {
   ScoringParams scoring;   // for the pixel-by-pixel comparison
   double min_score = 0.4;  // candidates below are false positives; 0 .. 1
   int min_pixels = 20;     // of the model in the image, fewer say nothing; >= 1
+  // Pixels of the model in the image at which the score counts half, since few pixels fit anywhere:
+  // it is multiplied by n / (n + half_trust_pixels); 0 .. 1000000, 0 = not done.
+  int half_trust_pixels = 0;
   // Candidates are validated before collisions are looked for, which then keep the one that
   // validation scored best.
   bool before_collisions = false;

@@ -54,18 +54,34 @@ PipelineParams PaperParams() {
   params.pruning.radius = 0.3;
   params.collisions.cell = 0.05;
   params.collisions.max_share = 0.15;
+  params.pose_refinement.iterations = 6;
+  params.pose_refinement.first_gate = 0.15;
+  params.pose_refinement.last_gate = 0.05;
+  params.pose_refinement.damping = 0.02;
+  params.pose_refinement.normal_radius = 0.1;
   params.validation.scoring = params.scoring;
-  params.validation.min_score = 0.55;
+  params.validation.scoring.epsilon = 0.06;
+  params.validation.scoring.penalty = 10.0;
+  params.validation.min_score = 0.2;
+  params.validation.half_trust_pixels = 100;
   params.validation.min_pixels = 20;
   params.validation.before_collisions = true;
   params.validation.outside_weight = 2.0;
   params.validation.outside_gap = 2;
-  params.validation.outside_depth = 0.1;
+  params.validation.outside_depth = 0.2;
   params.validation.ground_height = 0.05;
   return params;
 }
 
 }  // namespace
+
+void PoseRefinementParams::Validate() const {
+  CheckWithin("pose_refinement iterations", iterations, 0, 100);
+  CheckWithin("pose_refinement first_gate", first_gate, 1e-3, 10.0);
+  CheckWithin("pose_refinement last_gate", last_gate, 1e-3, 10.0);
+  CheckWithin("pose_refinement damping", damping, 1e-6, 10.0);
+  CheckWithin("pose_refinement normal_radius", normal_radius, 0.01, 2.0);
+}
 
 void PipelineParams::Validate() const {
   sweep.Validate();
@@ -78,6 +94,7 @@ void PipelineParams::Validate() const {
   goodsac.Validate();
   scoring.Validate();
   pruning.Validate();
+  pose_refinement.Validate();
   collisions.Validate();
   validation.Validate();
   CheckWithin("max_reported_hypotheses", max_reported_hypotheses, 1, 500);

@@ -18,6 +18,16 @@ enum class Method {
   kDefault,  // the best that we know
 };
 
+// Refinement of the candidates that pruning leaves (not in the paper).
+struct PoseRefinementParams {
+  int iterations = 0;          // of ICP with the nearest view's validation points; 0 = none .. 100
+  double first_gate = 0.15;    // m, farther pairs are left out at first ..; > 0
+  double last_gate = 0.05;     // m, .. and in the end; > 0
+  double damping = 0.02;       // of the points' number, keeps what they do not determine; > 0
+  double normal_radius = 0.1;  // m, a scene normal is that of the points this near; > 0
+  void Validate() const;
+};
+
 // Everything that can be set, one struct a stage. io/config reads it from YAML.
 struct PipelineParams {
   Method method = Method::kDefault;
@@ -31,6 +41,7 @@ struct PipelineParams {
   GoodsacParams goodsac;
   ScoringParams scoring;
   PruningParams pruning;
+  PoseRefinementParams pose_refinement;
   CollisionParams collisions;
   ValidationParams validation;
   int max_reported_hypotheses = 200;  // in a result and its message; 1 .. 500
