@@ -1,0 +1,126 @@
+#include "rimod/refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/io/random_values.h"
+#include "tests/support/matchers.h"
+#include "tests/support/ray_caster.h"
+#include "tests/support/surfel_models.h"
+
+namespace rimod {
+namespace {
+
+const Eigen::Isometry3d kPose = Placed(2.2, 0.1, -1.1, 0.5);
+const Eigen::Vector3d kSize(0.5, 0.4, 0.6);
+
+// A crate before a wall on a floor.
+const Scene& CrateScene() {
+  static const Scene scene = [] {
+    World world;
+    world.planes = {{Eigen::Vector3d(4, 0, 0), -Eigen::Vector3d::UnitX()},
+                    {Eigen::Vector3d(0, 0, -1.1), Eigen::Vector3d::UnitZ()}};
+    BoxShape box;
+    box.T_local_box = kPose * Eigen::Translation3d(0, 0, 0.3);
+    box.half_size = 0.5 * kSize;
+    world.boxes = {box};
+    RangeImageParams params;
+    params.resolution = 0.0069;
+    return Scene(
+        MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), BeamPattern{}), params),
+        0.05, Execution{});
+  }();
+  return scene;
+}
+
+const SurfaceSample& Crate() {
+  static const SurfaceSample sample = [] {
+    const ObjectModel model = BoxModel("crate", kSize, 0.03);
+    return SurfaceSample{model.points, model.normals};
+  }();
+  return sample;
+}
+
+Eigen::Isometry3d Refine(const Eigen::Isometry3d& start, Freedom freedom, int iterations = 15) {
+  return RefinePose(CrateScene(), Crate(), start.cast<float>(), freedom, iterations, 0.15, 0.05,
+                    0.001, 0.001)
+      .cast<double>();
+}
+
+TEST(RefinePoseTest, StaysAtTheTruePose) {
+  for (const Freedom freedom : {Freedom::kUpright, Freedom::kAll})
+    EXPECT_TRUE(PosesNear(Refine(kPose, freedom), kPose, 0.01, 0.02));
+}
+
+TEST(RefinePoseTest, ComesBackFromNearby) {
+  RandomValues random(1);
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Isometry3d start = kPose;
+    start.pretranslate(random.Vector(0.05));
+    start.rotate(Eigen::AngleAxisd(random.Between(-0.1, 0.1), Eigen::Vector3d::UnitZ()));
+    EXPECT_TRUE(PosesNear(Refine(start, Freedom::kUpright), kPose, 0.015, 0.03)) << i;
+    start.rotate(Eigen::AngleAxisd(random.Between(-0.05, 0.05), Eigen::Vector3d::UnitX()));
+    EXPECT_TRUE(PosesNear(Refine(start, Freedom::kAll), kPose, 0.015, 0.03)) << i;
+  }
+}
+
+TEST(RefinePoseTest, KeepsTheTiltWhereOnlyHeadingAndPositionAreFree) {
+  RandomValues random(2);
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Isometry3d start = kPose;
+    start.rotate(Eigen::AngleAxisd(0.1, random.Unit()));
+    const Eigen::Isometry3d refined = Refine(start, Freedom::kUpright);
+    EXPECT_NEAR(refined.linear()(2, 2), start.linear()(2, 2), 1e-4);
+    EXPECT_NEAR(refined.linear().determinant(), 1.0, 1e-4);
+  }
+}
+
+TEST(RefinePoseTest, StrongDampingOfTheTiltKeepsItUpright) {
+  Eigen::Isometry3d start = kPose;
+  start.rotate(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()));
+  const double stiff = RefinePose(CrateScene(), Crate(), start.cast<float>(), Freedom::kAll, 10,
+                                  0.15, 0.05, 0.001, 1000.0)
+                           .linear()(2, 2);
+  EXPECT_NEAR(stiff, std::cos(0.1), 1e-3);
+}
+
+TEST(RefinePoseTest, NothingToPairLeavesThePoseAsItIs) {
+  RandomValues random(3);
+  for (const Eigen::Isometry3d& start :
+       {Placed(2.2, 0.1, 5.0, 0.5), Placed(-3, 0, 0, 0), Placed(1.0, 0, -0.3, 0)})
+    EXPECT_TRUE(PosesNear(Refine(start, Freedom::kAll), start, 1e-6, 1e-3));
+  const Eigen::Isometry3f start = kPose.cast<float>();
+  EXPECT_EQ(
+      RefinePose(CrateScene(), SurfaceSample{}, start, Freedom::kAll, 5, 0.1, 0.05, 0.01, 0.01)
+          .matrix(),
+      start.matrix());
+  const Scene empty(RangeImage(), 0.05, Execution{});
+  EXPECT_EQ(RefinePose(empty, Crate(), start, Freedom::kAll, 5, 0.1, 0.05, 0.01, 0.01).matrix(),
+            start.matrix());
+  EXPECT_TRUE(PosesNear(Refine(kPose, Freedom::kAll, 0), kPose, 1e-6, 1e-3));
+}
+
+TEST(RefinePoseTest, WhatTheSurfaceDoesNotDetermineStays) {
+  // A plate in a wall may slide along it: damping holds it where it was.
+  World world;
+  world.planes = {{Eigen::Vector3d(3, 0, 0), -Eigen::Vector3d::UnitX()}};
+  RangeImageParams params;
+  params.resolution = 0.0069;
+  const Scene scene(
+      MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), BeamPattern{}), params), 0.05,
+      Execution{});
+  const ObjectModel plate = PlateModel("plate", 0.5, 0.03);
+  const Eigen::Isometry3d start = Placed(2.95, 0.2, -0.3, M_PI + 0.03);
+  const Eigen::Isometry3d refined =
+      RefinePose(scene, {plate.points, plate.normals}, start.cast<float>(), Freedom::kAll, 15, 0.15,
+                 0.05, 0.01, 0.01)
+          .cast<double>();
+  EXPECT_NEAR(refined.translation().x(), 3.0, 0.01);
+  EXPECT_NEAR(refined.translation().y(), 0.2, 0.02);
+  EXPECT_NEAR(refined.translation().z(), -0.3, 0.02);
+  EXPECT_NEAR(refined.linear().col(0).x(), -1.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace rimod
