@@ -194,6 +194,7 @@ ValidationParams Validation() {
   params.scoring.no_return_penalty = 0.5;
   params.scoring.window = 0;
   params.min_pixels = 20;
+  params.half_trust_pixels = 0;
   params.outside_weight = 0.0;
   params.outside_gap = 2;
   params.outside_depth = 0.1;
@@ -268,6 +269,16 @@ TEST(ValidatePoseTest, TooFewPixelsSayNothing) {
   EXPECT_EQ(ValidatePose(image, Crate(), kCratePose, params), 0.0);
   EXPECT_EQ(ValidatePose(image, Crate(), Placed(-3, 0, 0, 0), Validation()), 0.0);  // behind
   EXPECT_EQ(ValidatePose(RangeImage(), Crate(), kCratePose, Validation()), 0.0);
+}
+
+TEST(ValidatePoseTest, FewPixelsAreTrustedLessWhenTold) {
+  const RangeImage image = SeeCrate(true);
+  ValidationParams params = Validation();
+  params.scoring.window = 1;
+  const double score = ValidatePose(image, Crate(), kCratePose, params);
+  const int pixels = RenderModel(Crate(), kCratePose, image.grid()).CountSeen();
+  params.half_trust_pixels = pixels;
+  EXPECT_NEAR(ValidatePose(image, Crate(), kCratePose, params), 0.5 * score, 1e-9);
 }
 
 TEST(LookAroundTest, AnObjectStandsFreeAndAPatchOfWallDoesNot) {

@@ -28,6 +28,7 @@ PipelineParams Params() {
   params.model_views.azimuths = 4;
   params.model_views.elevations = 2;
   params.model_views.distance = 2.5;
+  params.model_views.ground_margin = 0.0;
   params.model_views.validation_points = 50;
   return params;
 }

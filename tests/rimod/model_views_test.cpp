@@ -23,6 +23,7 @@ ModelViewParams Params() {
   params.distance = 2.5;
   params.validation_points = 80;
   params.outside_points = 30;
+  params.ground_margin = 0.0;
   params.outside_gap = 0.04;
   return params;
 }
