@@ -274,6 +274,7 @@ class Comparison {
 }  // namespace
 
 void EvidenceParams::Validate() const {
+  CheckWithin("evidence normal_radius", normal_radius, 1e-3, 1.0);
   CheckWithin("evidence depth_tolerance", depth_tolerance, 1e-3, 1.0);
   CheckWithin("evidence slope_tolerance", slope_tolerance, 0.0, 10.0);
   CheckWithin("evidence max_tolerance", max_tolerance, depth_tolerance, 10.0);

@@ -15,6 +15,7 @@ namespace rimod {
 // at full resolution. Goes past the paper's section III-D, which uses the score of eq. 2 alone.
 
 struct EvidenceParams {
+  double normal_radius = 0.05;  // m, a scene normal is that of the points this near; > 0
   double depth_tolerance =
       0.03;  // m, measured against rendered depth on a surface seen head-on; > 0
   double slope_tolerance = 0.25;  // of a pixel's size times the surface's slope, added to it; >= 0

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "rimod/candidates.h"
 #include "rimod/object_model.h"
 #include "rimod/point_tree.h"
 #include "rimod/range_image.h"
@@ -13,13 +14,6 @@ namespace rimod {
 
 // Rejection of false positives (paper, section III-D): the best of a local area, no collisions
 // between neighbours, and the same range image as rendered.
-
-// A scored pose of one of the database's models.
-struct Candidate {
-  int model = 0;  // in the database
-  Eigen::Isometry3d T_sensor_object = Eigen::Isometry3d::Identity();
-  double score = 0.0;
-};
 
 // Falling score; ties by model, then position, so that the order is unique.
 bool BetterCandidate(const Candidate& a, const Candidate& b);

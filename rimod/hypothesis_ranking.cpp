@@ -8,39 +8,48 @@
 namespace rimod {
 namespace {
 
-struct Tally {
-  float at_place = 0.0f;  // sum of 1 - |difference| / epsilon
-  int hits = 0;
-  int looked_through = 0;
-  int known = 0;  // points where the scene says something and nothing is in front
-};
-
-void Count(const Scene& scene, const Eigen::Vector3f& p, float epsilon, Tally* tally) {
+void Count(const Scene& scene, const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
+           float epsilon, RankingFigures* figures) {
   const int pixel = scene.PixelOf(p);
   if (pixel < 0) return;
   const float range = scene.range(pixel);
   if (range == 0.0f) return;
   const float behind = range - p.norm();
   if (behind < -epsilon) return;  // occluded
-  ++tally->known;
+  figures->known += 1.0;
   if (behind > epsilon) {
-    ++tally->looked_through;
+    figures->looked_through += 1.0;
     return;
   }
-  tally->at_place += 1.0f - std::abs(behind) / epsilon;
-  ++tally->hits;
+  figures->at_place += 1.0 - std::abs(behind) / epsilon;
+  figures->hits += 1.0;
+  figures->agreeing += scene.normal(pixel).dot(normal);
 }
 
-bool GoesOn(const Scene& scene, const Eigen::Vector3f& p, float epsilon) {
+void CountOutside(const Scene& scene, const Eigen::Vector3f& p, float epsilon,
+                  RankingFigures* figures) {
   const int pixel = scene.PixelOf(p);
-  if (pixel < 0) return false;
+  if (pixel < 0) return;
   const float range = scene.range(pixel);
-  return range > 0.0f && std::abs(range - p.norm()) <= epsilon;
+  if (range == 0.0f) return;
+  const float behind = range - p.norm();
+  if (behind > epsilon) figures->jumps += 1.0;
+  if (std::abs(behind) <= epsilon) figures->goes_on += 1.0;
+}
+
+void Normalise(double count, double outside_count, RankingFigures* figures) {
+  for (double* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
+                         &figures->known, &figures->agreeing})
+    *figure /= count;
+  if (outside_count <= 0.0) return;
+  figures->goes_on /= outside_count;
+  figures->jumps /= outside_count;
 }
 
 }  // namespace
 
 void RankingParams::Validate() const {
+  CheckWithin("ranking min_normal_cosine", min_normal_cosine, -1.0, 1.0);
   CheckWithin("ranking coarse_epsilon", coarse_epsilon, 1e-3, 10.0);
   CheckWithin("ranking fine_epsilon", fine_epsilon, 1e-3, 10.0);
   CheckWithin("ranking see_through", see_through, 0.0, 1e6);
@@ -48,6 +57,10 @@ void RankingParams::Validate() const {
   CheckWithin("ranking first_points", first_points, 1, 10000);
   CheckWithin("ranking first_min_share", first_min_share, 0.0, 1.0);
   CheckWithin("ranking pixels_half", pixels_half, 0.0, 1e6);
+  CheckWithin("ranking max_refined", max_refined, 1, 1'000'000);
+  CheckWithin("ranking max_judged", max_judged, 1, 100'000);
+  CheckWithin("ranking same_distance", same_distance, 1e-4, 10.0);
+  CheckWithin("ranking same_angle", same_angle, 1e-4, 3.2);
 }
 
 RankingModel MakeRankingModel(const ObjectModel& model) {
@@ -78,31 +91,40 @@ int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_obj
   return nearest;
 }
 
+std::optional<RankingFigures> CompareViewPoints(const Scene& scene, const RankingModel& model,
+                                                const Eigen::Isometry3f& T_sensor_object,
+                                                double epsilon, const RankingParams& params) {
+  const int nearest = NearestView(model, T_sensor_object);
+  if (nearest < 0) return std::nullopt;
+  const RankingView& view = model.views[nearest];
+  const std::size_t count = view.surface.points.size();
+  if (count == 0) return std::nullopt;
+  const float eps = static_cast<float>(epsilon);
+  RankingFigures figures;
+  const auto compare = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Count(scene, T_sensor_object * view.surface.points[i],
+            T_sensor_object.linear() * view.surface.normals[i], eps, &figures);
+    }
+  };
+  const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
+  compare(0, first);
+  if (figures.hits < params.first_min_share * static_cast<double>(first)) return std::nullopt;
+  compare(first, count);
+  for (const Eigen::Vector3f& point : view.outside)
+    CountOutside(scene, T_sensor_object * point, eps, &figures);
+  Normalise(static_cast<double>(count), static_cast<double>(view.outside.size()), &figures);
+  return figures;
+}
+
 double RankingScore(const Scene& scene, const RankingModel& model,
                     const Eigen::Isometry3f& T_sensor_object, double epsilon,
                     const RankingParams& params) {
-  const int nearest = NearestView(model, T_sensor_object);
-  if (nearest < 0) return 0.0;
-  const RankingView& view = model.views[nearest];
-  const std::size_t count = view.surface.points.size();
-  if (count == 0) return 0.0;
-  const float eps = static_cast<float>(epsilon);
-  Tally tally;
-  const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
-  for (std::size_t i = 0; i < first; ++i)
-    Count(scene, T_sensor_object * view.surface.points[i], eps, &tally);
-  if (tally.hits < params.first_min_share * static_cast<double>(first)) return 0.0;
-  for (std::size_t i = first; i < count; ++i)
-    Count(scene, T_sensor_object * view.surface.points[i], eps, &tally);
-  int going_on = 0;
-  for (const Eigen::Vector3f& point : view.outside)
-    going_on += GoesOn(scene, T_sensor_object * point, eps);
-
-  const double n = static_cast<double>(count);
-  const double inside = (tally.at_place - params.see_through * tally.looked_through) / n;
-  const double outside =
-      view.outside.empty() ? 0.0 : going_on / static_cast<double>(view.outside.size());
-  return inside - params.outside * outside;
+  const std::optional<RankingFigures> figures =
+      CompareViewPoints(scene, model, T_sensor_object, epsilon, params);
+  if (!figures) return 0.0;
+  return figures->at_place - params.see_through * figures->looked_through -
+         params.outside * figures->goes_on;
 }
 
 }  // namespace rimod

@@ -9,6 +9,7 @@ namespace rimod {
 
 void MatchingParams::Validate() const {
   CheckWithin("matching max_descriptor_distance", max_descriptor_distance, 1e-4, 10.0);
+  CheckWithin("matching projected_dimensions", projected_dimensions, 1, 256);
   CheckWithin("matching max_matches", max_matches, 1, 100'000);
   CheckWithin("matching max_checks", max_checks, 1, 100'000'000);
   CheckWithin("matching min_shared_cells", min_shared_cells, 0, 256);

@@ -25,6 +25,9 @@ struct MatchingParams {
   // m, distances count relative to how rough (standard deviation) the scene's patch is, but at
   // least this: flat patches, which are everywhere, come last. 0 = distances as they are.
   double min_roughness = 0.0;
+  // Default method: principal components that descriptors are shortened to before the search;
+  // distances are then root mean squares over these. 1 .. 256
+  int projected_dimensions = 16;
   void Validate() const;
 };
 

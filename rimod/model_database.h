@@ -4,8 +4,11 @@
 #include <vector>
 
 #include "rimod/descriptor_index.h"
+#include "rimod/descriptor_projection.h"
+#include "rimod/evidence.h"
 #include "rimod/execution.h"
 #include "rimod/false_positive_rejection.h"
+#include "rimod/hypothesis_ranking.h"
 #include "rimod/object_model.h"
 #include "rimod/params.h"
 
@@ -28,21 +31,39 @@ class ModelDatabase {
   struct FeatureOrigin {
     int model = 0;
     int feature = 0;  // among the model's own, view after view
+    int view = 0;     // that it was seen in
   };
+  // For the paper's method; absent otherwise.
   const DescriptorIndex& descriptors() const { return *descriptors_; }
   const FeatureOrigin& origin(int index) const { return origins_[index]; }
   // A model's features, view after view.
   const std::vector<const Feature*>& features(int model) const { return features_[model]; }
 
+  // For the paper's method; empty otherwise.
   const std::vector<CollisionShape>& collision_shapes() const { return collision_shapes_; }
 
+  // For the default method: the descriptors shortened for faster search, numbered as above, and the
+  // models as its stages want them.
+  const DescriptorProjection& projection() const { return *projection_; }
+  const DescriptorIndex& projected_descriptors() const { return *projected_descriptors_; }
+  const std::vector<RankingModel>& ranking_models() const { return ranking_models_; }
+  const std::vector<JudgedModel>& judged_models() const { return judged_models_; }
+
  private:
+  void ListFeatures();
+  void PreparePaperMethod(const PipelineParams& params);
+  void PrepareDefaultMethod(const PipelineParams& params);
+
   std::vector<ObjectModel> models_;
   std::string descriptor_kind_;
   std::vector<FeatureOrigin> origins_;
   std::vector<std::vector<const Feature*>> features_;  // point into models_
   std::unique_ptr<DescriptorIndex> descriptors_;
   std::vector<CollisionShape> collision_shapes_;
+  std::unique_ptr<DescriptorProjection> projection_;
+  std::unique_ptr<DescriptorIndex> projected_descriptors_;
+  std::vector<RankingModel> ranking_models_;
+  std::vector<JudgedModel> judged_models_;  // refer to models_
 };
 
 }  // namespace rimod

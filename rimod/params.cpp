@@ -27,6 +27,7 @@ PipelineParams PaperParams() {
   params.model_views.max_elevation = 0.6;
   params.model_views.distance = 2.5;
   params.model_views.validation_points = 100;
+  params.model_views.ground_margin = 0.3;
 
   params.matching.max_descriptor_distance = 0.05;
   params.matching.max_matches = 60;
@@ -73,6 +74,21 @@ PipelineParams PaperParams() {
   return params;
 }
 
+// Our own method: many features and matches, sorted out later.
+PipelineParams OwnParams() {
+  PipelineParams params;
+  params.method = Method::kDefault;
+  params.interest_points.measure = InterestMeasure::kSurfaceChange;
+  params.interest_points.max_points = 2000;
+  params.interest_points.suppression_radius = 0.045;
+  params.range_patch.mask_empty_cells = false;
+  params.model_views.ground_margin = 0.5;
+  params.matching.max_descriptor_distance = 0.16;
+  params.matching.max_matches = 25;
+  params.matching.max_checks = 600;
+  return params;
+}
+
 }  // namespace
 
 void PoseRefinementParams::Validate() const {
@@ -81,6 +97,13 @@ void PoseRefinementParams::Validate() const {
   CheckWithin("pose_refinement last_gate", last_gate, 1e-3, 10.0);
   CheckWithin("pose_refinement damping", damping, 1e-6, 10.0);
   CheckWithin("pose_refinement normal_radius", normal_radius, 0.01, 2.0);
+}
+
+void ChoiceParams::Validate() const {
+  CheckWithin("choice min_probability", min_probability, 0.0, 1.0);
+  CheckWithin("choice max_explained_share", max_explained_share, 0.0, 1.0);
+  CheckWithin("choice same_class_distance", same_class_distance, 0.0, 10.0);
+  CheckWithin("choice other_class_distance", other_class_distance, 0.0, 10.0);
 }
 
 void PipelineParams::Validate() const {
@@ -97,11 +120,15 @@ void PipelineParams::Validate() const {
   pose_refinement.Validate();
   collisions.Validate();
   validation.Validate();
+  ranking.Validate();
+  refinement.Validate();
+  evidence.Validate();
+  choice.Validate();
   CheckWithin("max_reported_hypotheses", max_reported_hypotheses, 1, 500);
 }
 
 PipelineParams DefaultParams(Method method) {
-  return method == Method::kPaper ? PaperParams() : PipelineParams();
+  return method == Method::kPaper ? PaperParams() : OwnParams();
 }
 
 }  // namespace rimod

@@ -1,13 +1,16 @@
 #pragma once
 
+#include "rimod/evidence.h"
 #include "rimod/false_positive_rejection.h"
 #include "rimod/goodsac.h"
+#include "rimod/hypothesis_ranking.h"
 #include "rimod/interest_points.h"
 #include "rimod/matching.h"
 #include "rimod/model_surface.h"
 #include "rimod/model_views.h"
 #include "rimod/range_image.h"
 #include "rimod/range_patch.h"
+#include "rimod/refinement.h"
 #include "rimod/scoring.h"
 #include "rimod/sweep_assembler.h"
 
@@ -28,6 +31,16 @@ struct PoseRefinementParams {
   void Validate() const;
 };
 
+// Which of the judged candidates become detections (default method).
+struct ChoiceParams {
+  double min_probability = 0.5;      // smallest score of a detection; 0 .. 1
+  double max_explained_share = 0.4;  // of its pixels may be explained by better ones; 0 .. 1
+  double same_class_distance =
+      0.4;  // of the diameter, between centres of two of one class; 0 .. 10
+  double other_class_distance = 0.2;  // .. of two classes, of the smaller diameter; 0 .. 10
+  void Validate() const;
+};
+
 // Everything that can be set, one struct a stage. io/config reads it from YAML.
 struct PipelineParams {
   Method method = Method::kDefault;
@@ -44,6 +57,10 @@ struct PipelineParams {
   PoseRefinementParams pose_refinement;
   CollisionParams collisions;
   ValidationParams validation;
+  RankingParams ranking;
+  RefinementParams refinement;
+  EvidenceParams evidence;
+  ChoiceParams choice;
   int max_reported_hypotheses = 200;  // in a result and its message; 1 .. 500
   void Validate() const;              // all of the above
 };

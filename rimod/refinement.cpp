@@ -92,6 +92,8 @@ void RefinementParams::Validate() const {
   CheckWithin("refinement fine_iterations", fine_iterations, 0, 100);
   CheckWithin("refinement coarse_gate", coarse_gate, 1e-3, 10.0);
   CheckWithin("refinement fine_gate", fine_gate, 1e-3, 10.0);
+  CheckWithin("refinement judged_first_gate", judged_first_gate, 1e-3, 10.0);
+  CheckWithin("refinement judged_last_gate", judged_last_gate, 1e-3, 10.0);
   CheckWithin("refinement damping", damping, 1e-6, 10.0);
   CheckWithin("refinement tilt_damping", tilt_damping, 1e-6, 1e6);
 }

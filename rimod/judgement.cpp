@@ -1,0 +1,54 @@
+#include "rimod/judgement.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace rimod {
+namespace {
+
+// Keeps ratios of small shares tame.
+constexpr double kSmallShare = 0.05;
+
+}  // namespace
+
+double Probability(const LogisticWeights& weights, const std::vector<double>& figures) {
+  assert(figures.size() == weights.weights.size());
+  double sum = weights.bias;
+  for (std::size_t i = 0; i < figures.size(); ++i)
+    sum += weights.weights[i] * (figures[i] - weights.means[i]) / weights.scales[i];
+  return 1.0 / (1.0 + std::exp(-sum));
+}
+
+std::vector<double> RankFigures(const RankingFigures& f, double pixels_across) {
+  const double size = std::log(std::max(pixels_across, 1.0));
+  return {f.at_place,
+          f.hits,
+          f.looked_through,
+          f.known,
+          f.agreeing,
+          f.goes_on,
+          f.jumps,
+          size,
+          f.at_place * size,
+          f.agreeing * size,
+          f.looked_through / (f.known + kSmallShare),
+          f.agreeing / (f.hits + kSmallShare),
+          f.at_place / (f.known + kSmallShare),
+          f.hits / (f.known + kSmallShare),
+          f.goes_on / (f.goes_on + f.jumps + kSmallShare)};
+}
+
+std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& f) {
+  std::vector<double> figures(evidence.values.begin(), evidence.values.end());
+  const double size = evidence.values[kLogMatchedPixels];
+  for (const EvidenceIndex index : {kMatched, kSeenThrough, kMatchedOfKnown, kSilhouetteContinues,
+                                    kSilhouetteKnown, kUnexplained, kNormalAgreement, kResidual})
+    figures.push_back(evidence.values[index] * size);
+  for (const double value : {f.at_place, f.looked_through, f.agreeing / (f.hits + kSmallShare),
+                             f.goes_on / (f.goes_on + f.jumps + kSmallShare)})
+    figures.push_back(value);
+  return figures;
+}
+
+}  // namespace rimod

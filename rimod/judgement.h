@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rimod/evidence.h"
+#include "rimod/hypothesis_ranking.h"
+
+namespace rimod {
+
+// What figures mean: probabilities by logistic regression, one set of weights for all classes. The
+// weights stand in judgement_weights.cpp and are learnt by experiments/train_judgement
+// (docs/accuracy.md).
+
+// Weights of a logistic regression over standardised figures.
+struct LogisticWeights {
+  std::vector<double> means, scales, weights;
+  double bias = 0.0;
+};
+
+// Probability for figures of the same number as the weights.
+double Probability(const LogisticWeights& weights, const std::vector<double>& figures);
+
+// The figures that a hypothesis is ranked by: those of the view's points, their ratios and the
+// object's size in the image (pixels across).
+std::vector<double> RankFigures(const RankingFigures& figures, double pixels_across);
+
+// The figures that a detection is judged by: the evidence, its products with the object's size in
+// the image, and the rank's.
+std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& figures);
+
+extern const LogisticWeights kRankWeights;
+extern const LogisticWeights kJudgementWeights;
+
+}  // namespace rimod

@@ -1,0 +1,135 @@
+#include "rimod/paper_method.h"
+
+#include <algorithm>
+
+#include "rimod/goodsac.h"
+#include "rimod/matching.h"
+#include "rimod/refinement.h"
+#include "rimod/scene.h"
+#include "rimod/scoring.h"
+
+namespace rimod {
+namespace {
+
+using CandidateList = std::vector<Candidate>;
+
+std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features,
+                                                      const ModelDatabase& database,
+                                                      const PipelineParams& params,
+                                                      const Execution& execution) {
+  const StageScope stage(execution, "matching");
+  std::vector<std::vector<Correspondence>> by_model(database.models().size());
+  for (const Correspondence& match :
+       MatchFeatures(features.features, database.descriptors(), params.matching, execution)) {
+    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
+    by_model[origin.model].push_back({match.scene_feature, origin.feature, match.distance});
+  }
+  return by_model;
+}
+
+std::vector<std::vector<Eigen::Isometry3d>> GeneratePoses(
+    const std::vector<std::vector<Correspondence>>& correspondences, const FeatureSet& features,
+    const ModelDatabase& database, const PipelineParams& params, const Execution& execution) {
+  const StageScope stage(execution, "hypotheses");
+  std::vector<std::vector<Eigen::Isometry3d>> poses(correspondences.size());
+  execution.parallel_for(poses.size(), [&](std::size_t m) {
+    poses[m] = CandidatePoses(correspondences[m], features.features,
+                              database.features(static_cast<int>(m)), params.goodsac);
+  });
+  return poses;
+}
+
+CandidateList ScorePoses(const RangeImage& image,
+                         const std::vector<std::vector<Eigen::Isometry3d>>& poses,
+                         const ModelDatabase& database, const PipelineParams& params,
+                         const Execution& execution) {
+  const StageScope stage(execution, "scoring");
+  std::vector<CandidateList> scored(poses.size());
+  execution.parallel_for(poses.size(), [&](std::size_t m) {
+    for (const Eigen::Isometry3d& pose : poses[m]) {
+      const double score = ScorePose(image, database.models()[m], pose, params.scoring);
+      if (score >= params.scoring.gamma) scored[m].push_back({static_cast<int>(m), pose, score});
+    }
+  });
+  CandidateList all;
+  for (const CandidateList& list : scored) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+CandidateList ValidateCandidates(const RangeImage& image, const CandidateList& candidates,
+                                 const ModelDatabase& database, const PipelineParams& params,
+                                 const Execution& execution) {
+  const StageScope stage(execution, "validation");
+  CandidateList validated = candidates;
+  execution.parallel_for(validated.size(), [&](std::size_t i) {
+    validated[i].score = ValidatePose(image, database.models()[validated[i].model],
+                                      validated[i].T_sensor_object, params.validation);
+  });
+  validated.erase(std::remove_if(validated.begin(), validated.end(),
+                                 [&](const Candidate& candidate) {
+                                   return candidate.score < params.validation.min_score;
+                                 }),
+                  validated.end());
+  std::sort(validated.begin(), validated.end(), BetterCandidate);
+  return validated;
+}
+
+CandidateList RefineCandidates(const RangeImage& image, const CandidateList& candidates,
+                               const ModelDatabase& database, const PipelineParams& params,
+                               const Execution& execution) {
+  const StageScope stage(execution, "refinement");
+  const PoseRefinementParams& refinement = params.pose_refinement;
+  const Scene scene(image, refinement.normal_radius, execution);
+  CandidateList refined = candidates;
+  execution.parallel_for(refined.size(), [&](std::size_t i) {
+    const ObjectModel& model = database.models()[refined[i].model];
+    const int view = NearestView(model, refined[i].T_sensor_object);
+    if (view < 0) return;
+    const SurfaceSample surface{model.views[view].validation_points,
+                                model.views[view].validation_normals};
+    refined[i].T_sensor_object =
+        RefinePose(scene, surface, refined[i].T_sensor_object.cast<float>(), Freedom::kAll,
+                   refinement.iterations, refinement.first_gate, refinement.last_gate,
+                   refinement.damping, refinement.damping)
+            .cast<double>();
+  });
+  return refined;
+}
+
+CandidateList WithoutCollisions(const CandidateList& candidates, const ModelDatabase& database,
+                                const PipelineParams& params, const Execution& execution) {
+  const StageScope stage(execution, "collisions");
+  return RejectCollisions(candidates, database.collision_shapes(), params.collisions);
+}
+
+}  // namespace
+
+StagedCandidates FindByTriples(const RangeImage& image, const FeatureSet& features,
+                               const ModelDatabase& database, const PipelineParams& params,
+                               const Execution& execution) {
+  const auto correspondences = MatchByModel(features, database, params, execution);
+  const auto poses = GeneratePoses(correspondences, features, database, params, execution);
+  CandidateList scored = ScorePoses(image, poses, database, params, execution);
+  const int num_found = static_cast<int>(scored.size());
+  CandidateList pruned;
+  {
+    const StageScope stage(execution, "pruning");
+    std::sort(scored.begin(), scored.end(), BetterCandidate);
+    pruned = PruneToLocalBest(scored, database.models(), params.pruning);
+  }
+  if (params.pose_refinement.iterations > 0)
+    pruned = RefineCandidates(image, pruned, database, params, execution);
+  CandidateList collision_free, validated;
+  if (params.validation.before_collisions) {
+    validated = ValidateCandidates(image, pruned, database, params, execution);
+    validated = collision_free = WithoutCollisions(validated, database, params, execution);
+  } else {
+    collision_free = WithoutCollisions(pruned, database, params, execution);
+    validated = ValidateCandidates(image, collision_free, database, params, execution);
+  }
+
+  return {num_found, std::move(scored), std::move(pruned), std::move(collision_free),
+          std::move(validated)};
+}
+
+}  // namespace rimod
