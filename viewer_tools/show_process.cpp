@@ -114,7 +114,7 @@ int ShowLog(const std::string& path, const Channels& channels) {
     if (process.process != kMatcher || report.num_scans != 1) times.push_back(process);
   if (report.num_scans == 1) times.push_back({kMatcher, last_times});
   Print(FormatStageTimes(times));
-  for (const std::string& error : report.errors) spdlog::error(error);
+  for (const std::string& error : report.errors) spdlog::error("{}", error);
   if (report.num_scans == 0 && report.errors.empty())
     spdlog::error("{}: nothing on {}", path, channels.detections);
   return report.errors.empty() && report.num_scans > 0 ? 0 : 1;

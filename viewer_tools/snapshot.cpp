@@ -72,7 +72,7 @@ class Painter {
       error = path + ": the picture cannot be encoded";
     }
     if (!error.empty()) {
-      spdlog::error(error);
+      spdlog::error("{}", error);
       failed_ = true;
       return;
     }
@@ -138,7 +138,7 @@ bool DrawLog(const SnapshotOptions& options, Painter* painter) {
         sequence.Add(std::move(*scan.image), std::move(scan.detections.detections));
       });
   sequence.Finish();
-  for (const std::string& error : report.errors) spdlog::error(error);
+  for (const std::string& error : report.errors) spdlog::error("{}", error);
   if (num_without_image > 0)
     spdlog::error("{}: {} scan(s) have detections on {} but no whole range image on {}",
                   options.log, num_without_image, options.channels.detections,
@@ -151,7 +151,7 @@ bool DrawLog(const SnapshotOptions& options, Painter* painter) {
 
 bool DrawScanFile(const SnapshotOptions& options, Painter* painter) {
   const DetectionLines detections = ReadDetectionLines(options.detections);
-  if (!detections.error.empty()) spdlog::error(detections.error);
+  if (!detections.error.empty()) spdlog::error("{}", detections.error);
   ScanSequence sequence(painter, FileStem(options.scan), options.max_scans);
   const ScanSourceReport report =
       ReadScans(options.scan, options.params.sweep, [&](NamedScan scan) {
@@ -161,8 +161,8 @@ bool DrawScanFile(const SnapshotOptions& options, Painter* painter) {
         sequence.Add(ComputeRangeImage(scan.scan, options.params, Execution()), std::move(found));
       });
   sequence.Finish();
-  for (const std::string& warning : report.warnings) spdlog::warn(warning);
-  for (const std::string& error : report.errors) spdlog::error(error);
+  for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
+  for (const std::string& error : report.errors) spdlog::error("{}", error);
   return detections.error.empty() && report.errors.empty();
 }
 
@@ -170,8 +170,8 @@ bool DrawScanFile(const SnapshotOptions& options, Painter* painter) {
 
 int RunSnapshot(const SnapshotOptions& options) {
   ModelFolder folder = LoadModelFolder(options.models);
-  if (!folder.error.empty()) spdlog::error(folder.error);
-  for (const std::string& error : folder.bad_files) spdlog::error(error);
+  if (!folder.error.empty()) spdlog::error("{}", folder.error);
+  for (const std::string& error : folder.bad_files) spdlog::error("{}", error);
   bool all_well = folder.error.empty() && folder.bad_files.empty();
 
   std::error_code cause;

@@ -2,15 +2,18 @@
 
 #include <CLI/CLI.hpp>
 
-#include "io/config.h"
+#include "io/bus_setup.h"
 #include "io/process_options.h"
 #include "viewer_tools/snapshot.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Draws what was found: each scan's range image and the view from above, with the objects "
-      "drawn in, as PNG files. Give either a LOG recorded with lcm-logger that holds range images "
-      "and detections, or a scan file with rimod-detect's output for it.",
+      "Draws what was found: a picture of each scan's range image and one from above, with the\n"
+      "objects drawn in. Takes a log of lcm-logger that holds range images and detections, or a\n"
+      "scan with rimod-detect's output for it. Prints the pictures' paths on stdout.\n\n"
+      "Examples: rimod-snapshot --models models --output pictures recorded.lcm\n"
+      "          rimod-snapshot --models models --output pictures --scan a.pcd --detections "
+      "a.jsonl\n",
       "rimod-snapshot");
   rimod::SnapshotOptions options;
   rimod::CommonOptions common;
@@ -30,29 +33,28 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
   app.add_option("--max-scans", options.max_scans, "Draw no more than so many scans")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
   app.add_option("--channel", bus.renamings, "The log has another name for a channel: NAME=OTHER")
       ->allow_extra_args(false)
       ->type_name("NAME=OTHER");
+  app.footer("Exit codes: 0 done; 1 something could not be read or written; 2 bad usage.");
   scan->needs(detections)->excludes(log);
   detections->needs(scan);
   if (const std::optional<int> exit_code = rimod::ParseCommandLine(&app, argc, argv))
     return *exit_code;
   rimod::LogToStderr(app.get_name());
 
+  const std::optional<rimod::Configuration> configuration = rimod::LoadConfiguration(common);
+  if (!configuration) return 2;
   const rimod::ChannelsResult channels = rimod::ChannelsFrom(bus);
-  const rimod::ConfigurationResult configuration =
-      common.config.empty()
-          ? rimod::ConfigurationResult{rimod::DefaultConfiguration(rimod::Method::kDefault), ""}
-          : rimod::ReadConfiguration(common.config);
-  std::string error = channels.error + configuration.error;
-  if (error.empty() && options.log.empty() && options.scan.empty())
-    error = "neither a LOG nor --scan is given; --help tells more";
+  std::string error = channels.error;
+  if (options.log.empty() && options.scan.empty()) error = "give a LOG or --scan; see --help";
   if (!error.empty()) {
-    spdlog::error(error);
+    spdlog::error("{}", error);
     return 2;
   }
   options.channels = *channels.channels;
-  options.params = configuration.configuration->pipeline;
+  options.params = configuration->pipeline;
   return rimod::RunSnapshot(options);
 }

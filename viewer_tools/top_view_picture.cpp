@@ -41,6 +41,7 @@ double Quantile(std::vector<double> values, double share) {
 double FloorHeight(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) return 0.0;
   std::vector<double> heights;
+  heights.reserve(points.size());
   for (const Eigen::Vector3d& p : points) heights.push_back(p.z());
   return Quantile(heights, 0.02);
 }

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# The command lines of rimod-show and rimod-snapshot: exit codes, clear words, nothing on stdout but
+# results.
+#   commands_test.sh BIN LOG
+set -u
+bin=$1 log=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+# check WHAT EXPECTED_CODE PATTERN COMMAND...: exit code, and what it says on stderr.
+check() {
+  local what=$1 code=$2 pattern=$3 actual
+  shift 3
+  timeout 60 "$@" >"$work/stdout" 2>"$work/stderr"
+  actual=$?
+  if [ "$actual" -ne "$code" ] || ! grep -q -- "$pattern" "$work/stderr"; then
+    echo "FAILED: $what: exit code $actual, not $code, or no '$pattern' in:"
+    cat "$work/stderr"
+    failures=$((failures + 1))
+  fi
+}
+
+head -c 5000 "$log" >"$work/truncated.lcm"
+: >"$work/empty.lcm"
+head -c 100000 /dev/zero >"$work/zeros.lcm"
+mkdir "$work/models"
+echo nonsense >"$work/models/broken.rimod"
+mkdir "$work/none"
+printf '%s\n' '{"scan":"x"}' >"$work/bad.jsonl"
+: >"$work/nothing.jsonl"
+printf 'VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 0 0\n2 1 0\n' >"$work/x.pcd"
+
+show=$bin/rimod-show
+check "show: no source" 2 "required" "$show"
+check "show: unknown option" 2 "nonsense" "$show" --nonsense "$log"
+check "show: missing log" 1 "$work/missing" "$show" "$work/missing"
+check "show: log without detections" 1 "nothing on RIMOD_DETECTIONS" "$show" "$log"
+check "show: truncated log" 1 "truncated.lcm" "$show" "$work/truncated.lcm"
+check "show: empty log" 1 "empty.lcm" "$show" "$work/empty.lcm"
+check "show: no log at all" 1 "zeros.lcm" "$show" "$work/zeros.lcm"
+check "show: a folder" 1 "models" "$show" "$work/models"
+check "show: unknown channel" 2 "NONSENSE" "$show" "$log" --channel NONSENSE=OTHER
+check "show: missing configuration" 2 "none.yaml" "$show" "$log" --config "$work/none.yaml"
+
+snapshot=$bin/rimod-snapshot
+check "snapshot: nothing to draw" 2 "LOG or --scan" "$snapshot" --models "$work/none" --output "$work/out"
+check "snapshot: scan without detections" 2 "detections" "$snapshot" --models "$work/none" \
+  --output "$work/out" --scan "$work/x.pcd"
+check "snapshot: log without detections" 1 "nothing on RIMOD_DETECTIONS" "$snapshot" \
+  --models "$work/none" --output "$work/out" "$log"
+check "snapshot: missing models" 1 "$work/missing" "$snapshot" --models "$work/missing" \
+  --output "$work/out" "$log"
+check "snapshot: broken model" 1 "broken.rimod" "$snapshot" --models "$work/models" \
+  --output "$work/out" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
+check "snapshot: bad detections" 1 "bad.jsonl: line 1" "$snapshot" --models "$work/none" \
+  --output "$work/out" --scan "$work/x.pcd" --detections "$work/bad.jsonl"
+check "snapshot: missing scan" 1 "$work/y.pcd" "$snapshot" --models "$work/none" \
+  --output "$work/out" --scan "$work/y.pcd" --detections "$work/nothing.jsonl"
+check "snapshot: output is a file" 1 "x.pcd" "$snapshot" --models "$work/none" \
+  --output "$work/x.pcd" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
+
+check "snapshot: a scan in which nothing was found" 0 "" "$snapshot" --models "$work/none" \
+  --output "$work/out/new" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
+printf '%s\n' "$work/out/new/x_range_image.png" "$work/out/new/x_from_above.png" >"$work/expected"
+diff "$work/expected" "$work/stdout" || failures=$((failures + 1))
+while IFS= read -r picture; do
+  [ "$(head -c 4 "$picture" | tail -c 3)" = PNG ] || { echo "FAILED: $picture"; failures=$((failures + 1)); }
+done <"$work/stdout"
+
+[ "$failures" -eq 0 ] && echo "all well"
+exit "$((failures > 0))"
