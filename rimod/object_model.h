@@ -40,8 +40,8 @@ struct ObjectModel {
 // a terminal and in JSON.
 bool IsValidModelName(const std::string& name);
 
-// Throws std::invalid_argument saying what is wrong: name, numbers not finite, lists of different
-// lengths, descriptors of another size, box with min > max.
+// Throws std::invalid_argument saying what is wrong: name, numbers not finite or beyond 1000 m,
+// lists of different lengths, descriptors of another size, box with min > max.
 void ValidateModel(const ObjectModel& model);
 
 }  // namespace rimod
