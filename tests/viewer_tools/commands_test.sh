@@ -14,7 +14,7 @@ check() {
   shift 3
   timeout 60 "$@" >"$work/stdout" 2>"$work/stderr"
   actual=$?
-  if [ "$actual" -ne "$code" ] || ! grep -q -- "$pattern" "$work/stderr"; then
+  if [ "$actual" -ne "$code" ] || { [ -n "$pattern" ] && ! grep -q -- "$pattern" "$work/stderr"; }; then
     echo "FAILED: $what: exit code $actual, not $code, or no '$pattern' in:"
     cat "$work/stderr"
     failures=$((failures + 1))
