@@ -78,6 +78,7 @@ Keys ModelKeys(PipelineParams* p) {
       {"model_views", "distance", &v.distance, "m, from the object's centre, at least 1.5 diameters; > 0"},
       {"model_views", "validation_points", &v.validation_points, "a view (paper: n = 100); 1 .. 10000"},
       {"model_views", "outside_points", &v.outside_points, "beside the silhouette, a view; 0 .. 10000"},
+      {"model_views", "ground_margin", &v.ground_margin, "m, ground shown around the box; 0 = the object alone .. 5"},
       {"model_views", "outside_gap", &v.outside_gap, "m, from the silhouette to its outside points; 0.005 .. 0.5"},
   };
 }
@@ -91,6 +92,7 @@ Keys MatchingKeys(PipelineParams* p) {
       {"matching", "max_checks", &m.max_checks, "model features looked at for one of the scene; >= 1"},
       {"matching", "min_shared_cells", &m.min_shared_cells, "cells that two descriptors must share to be compared anew over these; 0 = empty cells count as the mean .. 256"},
       {"matching", "min_roughness", &m.min_roughness, "m, distances count relative to the patch's roughness, but at least this; 0 = as they are"},
+      {"matching", "projected_dimensions", &m.projected_dimensions, "principal components that descriptors are shortened to (default method); 1 .. 256"},
 
       {"goodsac", "max_correspondences", &g.max_correspondences, "the best ones, that triples are made of (paper: n); >= 3"},
       {"goodsac", "min_model_spacing", &g.min_model_spacing, "m, of a scene feature's correspondences to nearer model features only the best counts; 0 = all"},
@@ -141,6 +143,49 @@ Keys RejectionKeys(PipelineParams* p) {
   };
 }
 
+Keys DefaultMethodKeys(PipelineParams* p) {
+  RankingParams& r = p->ranking;
+  RefinementParams& f = p->refinement;
+  EvidenceParams& e = p->evidence;
+  ChoiceParams& c = p->choice;
+  return {
+      {"ranking", "min_normal_cosine", &r.min_normal_cosine, "of a correspondence's normals after the turn; -1 .. 1"},
+      {"ranking", "coarse_epsilon", &r.coarse_epsilon, "m, depth difference of a point at its place before refinement; > 0"},
+      {"ranking", "fine_epsilon", &r.fine_epsilon, "m, after it; > 0"},
+      {"ranking", "see_through", &r.see_through, "what a point costs that the laser went through; >= 0"},
+      {"ranking", "outside", &r.outside, "what an outside point costs where the surface goes on; >= 0"},
+      {"ranking", "first_points", &r.first_points, "looked at first, hopeless hypotheses are given up then; >= 1"},
+      {"ranking", "first_min_share", &r.first_min_share, "of them must be at their place; 0 .. 1"},
+      {"ranking", "pixels_half", &r.pixels_half, "squared pixels across the object that make a score count half; >= 0"},
+      {"ranking", "max_refined", &r.max_refined, "best hypotheses of different poses that are refined; >= 1"},
+      {"ranking", "max_judged", &r.max_judged, "best of them that are judged; >= 1"},
+      {"ranking", "same_distance", &r.same_distance, "m, poses nearer than this ..; > 0"},
+      {"ranking", "same_angle_deg", DegreesOf{&r.same_angle}, ".. and turned by less are the same; > 0"},
+
+      {"refinement", "coarse_iterations", &f.coarse_iterations, "of every candidate, upright; 0 .. 100"},
+      {"refinement", "fine_iterations", &f.fine_iterations, "of the best candidates, all degrees of freedom; 0 .. 100"},
+      {"refinement", "coarse_gate", &f.coarse_gate, "m, farther pairs are left out at first ..; > 0"},
+      {"refinement", "fine_gate", &f.fine_gate, "m, .. and in the end; > 0"},
+      {"refinement", "judged_first_gate", &f.judged_first_gate, "m, the same before judging, at first ..; > 0"},
+      {"refinement", "judged_last_gate", &f.judged_last_gate, "m, .. and in the end; > 0"},
+      {"refinement", "damping", &f.damping, "of the points' number, keeps what they do not determine; > 0"},
+      {"refinement", "tilt_damping", &f.tilt_damping, "the same for the tilt from the vertical; > 0"},
+
+      {"evidence", "normal_radius", &e.normal_radius, "m, a scene normal is that of the points this near; > 0"},
+      {"evidence", "depth_tolerance", &e.depth_tolerance, "m, measured against rendered depth on a surface seen head-on; > 0"},
+      {"evidence", "slope_tolerance", &e.slope_tolerance, "of a pixel's size times the surface's slope, added to it; >= 0"},
+      {"evidence", "max_tolerance", &e.max_tolerance, "m, on surfaces seen at a flat angle; >= depth_tolerance"},
+      {"evidence", "silhouette_gap", &e.silhouette_gap, "m, how far beside the silhouette is looked; > 0"},
+      {"evidence", "continue_tolerance", &e.continue_tolerance, "m, a surface going on past the silhouette; > 0"},
+      {"evidence", "support_height", &e.support_height, "m, around the object's bottom; > 0"},
+
+      {"choice", "min_probability", &c.min_probability, "smallest score of a detection; 0 .. 1"},
+      {"choice", "max_explained_share", &c.max_explained_share, "of its pixels that better ones may explain; 0 .. 1"},
+      {"choice", "same_class_distance", &c.same_class_distance, "of the diameter, between centres of two of one class; 0 .. 10"},
+      {"choice", "other_class_distance", &c.other_class_distance, "of the smaller diameter, of two classes; 0 .. 10"},
+  };
+}
+
 Keys ResultKeys(PipelineParams* p) {
   return {
       {"result", "max_reported_hypotheses", &p->max_reported_hypotheses, "in a result and its message; 1 .. 500"},
@@ -168,8 +213,8 @@ std::vector<ConfigKey> ConfigTable(Configuration* configuration) {
        "hold where this file says nothing"}};
   for (const Keys& keys : {ScanKeys(p), FeatureKeys(p), ModelKeys(p), MatchingKeys(p),
                            ScoringKeys("scoring", &p->scoring), RejectionKeys(p),
-                           ScoringKeys("validation_scoring", &p->validation.scoring), ResultKeys(p),
-                           BusKeys(&configuration->bus)}) {
+                           ScoringKeys("validation_scoring", &p->validation.scoring),
+                           DefaultMethodKeys(p), ResultKeys(p), BusKeys(&configuration->bus)}) {
     table.insert(table.end(), keys.begin(), keys.end());
   }
   return table;
@@ -192,6 +237,10 @@ std::vector<SectionCheck> SectionChecks() {
       {"collisions", [](C c) { c.pipeline.collisions.Validate(); }},
       {"validation_scoring", [](C c) { c.pipeline.validation.scoring.Validate(); }},
       {"validation", [](C c) { c.pipeline.validation.Validate(); }},
+      {"ranking", [](C c) { c.pipeline.ranking.Validate(); }},
+      {"refinement", [](C c) { c.pipeline.refinement.Validate(); }},
+      {"evidence", [](C c) { c.pipeline.evidence.Validate(); }},
+      {"choice", [](C c) { c.pipeline.choice.Validate(); }},
       {"result", [](C c) { c.pipeline.Validate(); }},
       {"bus", [](C c) { c.bus.Validate(); }},
   };

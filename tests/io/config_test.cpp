@@ -147,6 +147,11 @@ TEST(ConfigTest, EveryFieldOfTheParametersHasAKey) {
   EXPECT_EQ(num_keys["collisions"], CountFields<CollisionParams>());
   EXPECT_EQ(num_keys["validation_scoring"], CountFields<ScoringParams>());
   EXPECT_EQ(num_keys["validation"], CountFields<ValidationParams>() - 1);  // scoring apart
+  EXPECT_EQ(num_keys["pose_refinement"], CountFields<PoseRefinementParams>());
+  EXPECT_EQ(num_keys["ranking"], CountFields<RankingParams>());
+  EXPECT_EQ(num_keys["refinement"], CountFields<RefinementParams>());
+  EXPECT_EQ(num_keys["evidence"], CountFields<EvidenceParams>());
+  EXPECT_EQ(num_keys["choice"], CountFields<ChoiceParams>());
   EXPECT_EQ(num_keys["bus"], CountFields<BusParams>());
   // Each struct has a section; `result` and the top level have one field each.
   const int num_structs = CountFields<PipelineParams>() - 2 + CountFields<Configuration>() - 1;
