@@ -53,6 +53,8 @@ DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& feature
     throw std::invalid_argument("features are of kind '" + features.descriptor_kind + "', not '" +
                                 params.range_patch.Kind() + "'");
   }
+  if (database.method() != params.method)
+    throw std::invalid_argument("the model database was prepared for another method");
   const StagedCandidates found = params.method == Method::kPaper
                                      ? FindByTriples(image, features, database, params, execution)
                                      : FindByEvidence(image, features, database, params, execution);

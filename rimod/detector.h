@@ -24,7 +24,8 @@ RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
                              const Execution& execution);
 
 // Finds the database's objects in a scan given as range image and features. Throws
-// std::invalid_argument for features of another kind than the parameters give.
+// std::invalid_argument for features of another kind than the parameters give and for a database
+// prepared for another method.
 DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,
                               const ModelDatabase& database, const PipelineParams& params,
                               const Execution& execution);

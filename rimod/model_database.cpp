@@ -20,7 +20,7 @@ std::vector<const Descriptor*> Descriptors(
 
 ModelDatabase::ModelDatabase(std::vector<ObjectModel> models, const PipelineParams& params,
                              const Execution& execution)
-    : models_(std::move(models)) {
+    : method_(params.method), models_(std::move(models)) {
   std::sort(models_.begin(), models_.end(),
             [](const ObjectModel& a, const ObjectModel& b) { return a.name < b.name; });
   for (std::size_t m = 0; m < models_.size(); ++m) {

@@ -24,6 +24,8 @@ class ModelDatabase {
 
   // Sorted by name.
   const std::vector<ObjectModel>& models() const { return models_; }
+  // The method that it was prepared for.
+  Method method() const { return method_; }
   // Of the models' features; empty when there are no models.
   const std::string& descriptor_kind() const { return descriptor_kind_; }
 
@@ -54,6 +56,7 @@ class ModelDatabase {
   void PreparePaperMethod(const PipelineParams& params);
   void PrepareDefaultMethod(const PipelineParams& params);
 
+  Method method_;
   std::vector<ObjectModel> models_;
   std::string descriptor_kind_;
   std::vector<FeatureOrigin> origins_;

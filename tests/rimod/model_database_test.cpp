@@ -16,6 +16,7 @@ namespace {
 
 PipelineParams Params() {
   PipelineParams params;
+  params.method = Method::kPaper;
   params.range_image.resolution = 0.01;
   params.model_views.azimuths = 4;
   params.model_views.elevations = 1;
@@ -115,6 +116,41 @@ TEST(ModelDatabaseTest, MayBeEmpty) {
   const ModelDatabase database({}, Params(), Execution{});
   EXPECT_TRUE(database.models().empty());
   EXPECT_EQ(database.descriptors().size(), 0);
+  PipelineParams params = Params();
+  params.method = Method::kDefault;
+  EXPECT_EQ(ModelDatabase({}, params, Execution{}).projected_descriptors().size(), 0);
+}
+
+TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
+  PipelineParams params = Params();
+  params.method = Method::kDefault;
+  params.matching.projected_dimensions = 7;
+  std::vector<ObjectModel> models = ThreeModels();
+  const ModelDatabase one(models, params, Execution{});
+  std::reverse(models.begin(), models.end());
+  const ModelDatabase two(models, params, OnThreads(2));
+  EXPECT_EQ(one.method(), Method::kDefault);
+  int total = 0;
+  for (int m = 0; m < 3; ++m) {
+    total += static_cast<int>(one.features(m).size());
+    EXPECT_EQ(one.ranking_models()[m].views.size(), one.models()[m].views.size());
+    EXPECT_EQ(&one.judged_models()[m].model(), &one.models()[m]);
+  }
+  ASSERT_EQ(one.projected_descriptors().size(), total);
+  ASSERT_EQ(two.projected_descriptors().size(), total);
+  for (int i = 0; i < total; ++i) {
+    const ModelDatabase::FeatureOrigin& origin = one.origin(i);
+    const Feature& feature = *one.features(origin.model)[origin.feature];
+    const std::vector<Feature>& seen = one.models()[origin.model].views[origin.view].features;
+    EXPECT_TRUE(&feature >= seen.data() && &feature < seen.data() + seen.size());
+    const Descriptor projected = one.projection().Project(feature.descriptor);
+    EXPECT_EQ(projected.size(), 7u);
+    EXPECT_EQ(projected, two.projection().Project(feature.descriptor));
+    const std::vector<DescriptorMatch> same =
+        one.projected_descriptors().FindNear(projected, total, 1e-6, total);
+    EXPECT_TRUE(std::any_of(same.begin(), same.end(),
+                            [i](const DescriptorMatch& match) { return match.index == i; }));
+  }
 }
 
 TEST(ModelDatabaseTest, RefusesTwoModelsOfOneName) {
