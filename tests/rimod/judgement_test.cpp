@@ -1,0 +1,64 @@
+#include "rimod/judgement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/io/random_values.h"
+
+namespace rimod {
+namespace {
+
+Evidence RandomEvidence(RandomValues* random) {
+  Evidence evidence;
+  for (double& value : evidence.values) value = random->Between(0.0, 1.0);
+  return evidence;
+}
+
+RankingFigures RandomFigures(RandomValues* random) {
+  RankingFigures figures;
+  for (auto* figure : {&figures.at_place, &figures.hits, &figures.looked_through, &figures.known,
+                       &figures.agreeing, &figures.goes_on, &figures.jumps})
+    *figure = static_cast<std::remove_pointer_t<decltype(figure)>>(random->Between(0.0, 1.0));
+  return figures;
+}
+
+TEST(ProbabilityTest, IsTheLogisticFunctionOfStandardisedFigures) {
+  const LogisticWeights weights{{1.0, 0.0}, {2.0, 0.5}, {3.0, -1.0}, 0.25};
+  EXPECT_NEAR(Probability(weights, {1.0, 0.0}), 1.0 / (1.0 + std::exp(-0.25)), 1e-12);
+  EXPECT_NEAR(Probability(weights, {3.0, 1.0}), 1.0 / (1.0 + std::exp(-1.25)), 1e-12);
+  EXPECT_NEAR(Probability(weights, {1000.0, 0.0}), 1.0, 1e-12);
+  EXPECT_NEAR(Probability(weights, {-1000.0, 0.0}), 0.0, 1e-12);
+}
+
+void ExpectUsable(const LogisticWeights& weights, std::size_t figures) {
+  ASSERT_EQ(weights.means.size(), figures);
+  ASSERT_EQ(weights.scales.size(), figures);
+  ASSERT_EQ(weights.weights.size(), figures);
+  EXPECT_TRUE(std::isfinite(weights.bias));
+  for (std::size_t i = 0; i < figures; ++i) {
+    EXPECT_TRUE(std::isfinite(weights.means[i]) && std::isfinite(weights.weights[i])) << i;
+    EXPECT_TRUE(std::isfinite(weights.scales[i]) && weights.scales[i] > 0.0) << i;
+  }
+}
+
+TEST(LearntWeightsTest, FitTheFigures) {
+  ExpectUsable(kRankWeights, RankFigures(RankingFigures{}, 50.0).size());
+  ExpectUsable(kJudgementWeights, JudgementFigures(Evidence{}, RankingFigures{}).size());
+}
+
+TEST(LearntWeightsTest, GiveProbabilitiesForAnyFigures) {
+  RandomValues random(1);
+  for (int i = 0; i < 200; ++i) {
+    const RankingFigures figures = i == 0 ? RankingFigures{} : RandomFigures(&random);
+    const double pixels = i == 1 ? 0.0 : random.Between(0.0, 300.0);
+    const double rank = Probability(kRankWeights, RankFigures(figures, pixels));
+    EXPECT_TRUE(rank >= 0.0 && rank <= 1.0) << rank;
+    const Evidence evidence = i == 0 ? Evidence{} : RandomEvidence(&random);
+    const double judged = Probability(kJudgementWeights, JudgementFigures(evidence, figures));
+    EXPECT_TRUE(judged >= 0.0 && judged <= 1.0) << judged;
+  }
+}
+
+}  // namespace
+}  // namespace rimod
