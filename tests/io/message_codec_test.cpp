@@ -5,14 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "io/detection_messages.h"
-#include "io/feature_messages.h"
-#include "io/laser_messages.h"
-#include "io/range_image_messages.h"
-#include "io/scan_messages.h"
-#include "random_values.h"
-#include "rimod/object_model_t.hpp"
-#include "rimod/status_t.hpp"
+#include "tests/support/sample_messages.h"
 
 namespace {
 
@@ -38,105 +31,10 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 namespace rimod {
 namespace {
 
-// A small valid message of each type that is read from outside, all its lists filled.
-template <typename Message>
-Message Sample();
-
-template <>
-bot_core::planar_lidar_t Sample() {
-  bot_core::planar_lidar_t message = ToMessage(LaserLine{Time(1), 0.1, 0.2, {1.0f, 2.0f, 3.0f}});
-  message.intensities = {4.0f};
-  message.nintensities = 1;
-  return message;
-}
-template <>
-bot_core::rigid_transform_t Sample() {
-  return ToMessage(TimedPose{});
-}
-template <>
-scan_t Sample() {
-  StampedScan scan;
-  scan.scan = RandomValues(1).AScan(5, 3);
-  return ToSections(scan)[0];
-}
-template <>
-range_image_t Sample() {
-  return ToSections(RandomValues(1).AnImage(5, 4), 3)[0];
-}
-template <>
-feature_set_t Sample() {
-  return ToSections(RandomValues(1).Features(3, 8), 3)[0];
-}
-template <>
-object_model_t Sample() {
-  object_model_t message = {};
-  message.num_sections = 1;
-  message.name = "fan";
-  message.source = "test";
-  message.descriptor = "kind";
-  message.descriptor_size = 2;
-  message.num_points = message.num_features = message.num_validation_points = 2;
-  message.num_outside_points = 2;
-  for (auto* list : {&message.x,
-                     &message.y,
-                     &message.z,
-                     &message.normal_x,
-                     &message.normal_y,
-                     &message.normal_z,
-                     &message.feature_x,
-                     &message.feature_y,
-                     &message.feature_z,
-                     &message.feature_normal_x,
-                     &message.feature_normal_y,
-                     &message.feature_normal_z,
-                     &message.validation_x,
-                     &message.validation_y,
-                     &message.validation_z,
-                     &message.validation_normal_x,
-                     &message.validation_normal_y,
-                     &message.validation_normal_z,
-                     &message.outside_x,
-                     &message.outside_y,
-                     &message.outside_z}) {
-    *list = {1.0f, 2.0f};
-  }
-  message.views.resize(2);
-  for (model_view_t& view : message.views) view = {};
-  message.num_views = 2;
-  message.values = {1, 2, 3, 4};
-  message.num_values = 4;
-  return message;
-}
-template <>
-pose_hypotheses_t Sample() {
-  return ToMessage(std::vector<PoseHypothesis>(2, {"fan", {}, 0.5, HypothesisStage::kPruned}), 2,
-                   1);
-}
-template <>
-detections_t Sample() {
-  StampedDetections detections;
-  detections.detections.resize(2);
-  detections.detections[0].class_name = "chair";
-  detections.stage_times = {{"matching", 1.0}};
-  return ToMessage(detections);
-}
-template <>
-status_t Sample() {
-  status_t message = {};
-  message.process = "rimod-test";
-  message.counters.resize(2);
-  for (counter_t& counter : message.counters) counter.value = 7;
-  message.num_counters = 2;
-  message.stage_times.resize(1);
-  message.stage_times[0].ms = 1.0;
-  message.num_stage_times = 1;
-  return message;
-}
-
 template <typename Message>
 class MessageCodecTest : public ::testing::Test {
  protected:
-  MessageCodecTest() : bytes_(EncodeMessage(Sample<Message>())) {}
+  MessageCodecTest() : bytes_(EncodeMessage(SampleMessage<Message>())) {}
 
   Decoded<Message> Decode() const { return DecodeMessage<Message>(bytes_.data(), bytes_.size()); }
   // Decodes and tells how much memory that took at once.
@@ -211,7 +109,7 @@ TYPED_TEST(MessageCodecTest, RandomDamageNeverThrows) {
 }
 
 TEST(MessageCodecCausesTest, CausesAreNamed) {
-  std::vector<std::uint8_t> bytes = EncodeMessage(Sample<scan_t>());
+  std::vector<std::uint8_t> bytes = EncodeMessage(SampleMessage<scan_t>());
   const auto error = [&bytes] { return DecodeMessage<scan_t>(bytes.data(), bytes.size()).error; };
   constexpr std::size_t kNumPoints = 8 + 16 + 16 + 56;  // where the count stands
   ASSERT_EQ(bytes[kNumPoints + 3], 5);
@@ -225,7 +123,7 @@ TEST(MessageCodecCausesTest, CausesAreNamed) {
 }
 
 TEST(MessageCodecCausesTest, ATextWithoutItsEndIsRejected) {
-  const detections_t message = Sample<detections_t>();
+  const detections_t message = SampleMessage<detections_t>();
   std::vector<std::uint8_t> bytes = EncodeMessage(message);
   const std::string name = "chair";
   const auto found = std::search(bytes.begin(), bytes.end(), name.begin(), name.end());
