@@ -100,6 +100,7 @@ echo "every section was recorded"
 "$bin/rimod-detect" --models "$models" "$log" >"$work/offline" 2>"$work/rimod-detect.err" ||
   fail "rimod-detect"
 "$digest" detections "$work/all" "$(basename "$log" .lcm)" >"$work/live"
+[ -s "$work/offline" ] || fail "nothing was found: nothing to compare"
 same "detections live and offline" "$work/live" "$work/offline"
 
 # The log replayed into one stage alone: INPUTS are played, OUTPUTS must come out as before.
