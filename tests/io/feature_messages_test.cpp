@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "io/message_codec.h"
-#include "random_values.h"
+#include "tests/io/random_values.h"
 
 namespace rimod {
 namespace {

@@ -8,7 +8,7 @@
 #include "bot_core/image_t.hpp"
 #include "bot_core/pointcloud2_t.hpp"
 #include "bot_core/pose_t.hpp"
-#include "random_values.h"
+#include "tests/io/random_values.h"
 
 namespace rimod {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "random_values.h"
+#include "tests/io/random_values.h"
 
 namespace rimod {
 namespace {

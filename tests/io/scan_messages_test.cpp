@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "io/message_codec.h"
-#include "random_values.h"
+#include "tests/io/random_values.h"
 
 namespace rimod {
 namespace {

@@ -8,7 +8,7 @@
 #include "io/feature_messages.h"
 #include "io/range_image_messages.h"
 #include "io/scan_messages.h"
-#include "random_values.h"
+#include "tests/io/random_values.h"
 #include "rimod/object_model_t.hpp"
 
 namespace rimod {
