@@ -66,7 +66,7 @@ class Painter {
     const std::string path = (std::filesystem::path(options_.output) / (name + ".png")).string();
     std::vector<unsigned char> bytes;
     std::string error;
-    if (cv::imencode(".png", picture, bytes)) {
+    if (cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
       error = WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
     } else {
       error = path + ": the picture cannot be encoded";
