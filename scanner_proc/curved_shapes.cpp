@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 // Real solutions of a t^2 + 2 b t + c = 0, without cancellation; the smaller first.
@@ -95,4 +95,4 @@ std::optional<SurfacePoint> Intersect(const FrustumShape& frustum, const Eigen::
   return nearest.point();
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -5,7 +5,7 @@
 
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 // Where a ray meets a surface.
 struct SurfacePoint {
@@ -23,4 +23,4 @@ std::optional<SurfacePoint> Intersect(const FrustumShape& frustum, const Eigen::
                                       const Eigen::Vector3d& direction, double min_range,
                                       double max_range);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

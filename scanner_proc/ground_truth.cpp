@@ -6,7 +6,7 @@
 
 #include "io/pose_messages.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 // Numbers of people's interest, without the noise of their last digits.
@@ -127,4 +127,4 @@ std::string ModelJson(const SceneObject& object) {
   return model.dump(1) + "\n";
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

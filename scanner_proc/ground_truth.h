@@ -7,7 +7,7 @@
 #include "scanner_proc/laser_scanner.h"
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 // What a sweep shows of one object that has a class.
 struct ObjectTruth {
@@ -46,4 +46,4 @@ std::string TruthJson(const std::vector<ScanTruth>& scans);
 // The model.json of a recording: class, object_pose, box, symmetry, up.
 std::string ModelJson(const SceneObject& object);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

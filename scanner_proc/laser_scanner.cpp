@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 struct Echo {
@@ -195,4 +195,4 @@ float LaserScanner::Measure(Beam* beam, Random* random) const {
   return static_cast<float>(range);
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -7,7 +7,7 @@
 #include "scanner_proc/ray_caster.h"
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 constexpr int kNoObject = -1;
 
@@ -67,4 +67,4 @@ class LaserScanner {
   std::vector<Eigen::Vector2d> bundle_;  // rays of a beam: offsets across it, rad
 };
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -10,7 +10,7 @@
 #include "scanner_proc/laser_scanner.h"
 #include "scanner_proc/ray_caster.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -114,4 +114,4 @@ LiveResult PublishSweeps(const Scene& scene, int num_sweeps, double speed, const
   return publisher.Finish();
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

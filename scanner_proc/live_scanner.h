@@ -10,7 +10,7 @@ namespace lcm {
 class LCM;
 }
 
-namespace rimod {
+namespace rimod::simulation {
 
 struct LiveResult {
   std::int64_t num_lines = 0;
@@ -25,4 +25,4 @@ struct LiveResult {
 LiveResult PublishSweeps(const Scene& scene, int num_sweeps, double speed, const Channels& channels,
                          lcm::LCM* lcm, const std::atomic<bool>& stop);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

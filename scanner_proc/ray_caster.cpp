@@ -9,7 +9,7 @@
 
 #include "scanner_proc/curved_shapes.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr double kMinRange = 0.001;  // m
@@ -223,4 +223,4 @@ std::optional<Hit> RayCaster::Cast(const Ray& ray, double max_range) const {
   return hit;
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -7,7 +7,7 @@
 
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 struct Ray {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();      // m, scene frame
@@ -41,4 +41,4 @@ class RayCaster {
   std::unique_ptr<Surfaces> surfaces_;
 };
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -1,6 +1,6 @@
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 void ExtendByVertices(const std::vector<Eigen::Vector3d>& vertices, const Eigen::Isometry3d& T,
@@ -90,4 +90,4 @@ Mesh TrianglesOf(const RectangleShape& rectangle) {
   return mesh;
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -9,7 +9,8 @@
 
 #include "rimod/model_building.h"
 
-namespace rimod {
+// Scene, ray, part, .. mean other things in the library: the simulator has a namespace of its own.
+namespace rimod::simulation {
 
 // Shapes that parts are made of, metres. Each stands on the origin of its part: the origin is the
 // middle of the bounding box's bottom face, z up.
@@ -120,4 +121,4 @@ ObjectFrame ObjectFrameOf(const SceneObject& object);
 Mesh TrianglesOf(const BoxShape& box);
 Mesh TrianglesOf(const RectangleShape& rectangle);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -6,7 +6,7 @@
 #include "scanner_proc/scene_object_reader.h"
 #include "scanner_proc/yaml_section.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr std::int64_t kMaxFileSize = 16 << 20;  // bytes; far beyond any scene written by a person
@@ -177,4 +177,4 @@ SceneResult ReadScene(const std::string& path) {
   }
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

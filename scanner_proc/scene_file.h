@@ -5,7 +5,7 @@
 
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 struct SceneResult {
   std::optional<Scene> scene;
@@ -16,4 +16,4 @@ struct SceneResult {
 // found relative to it. Unknown keys and values out of range are errors.
 SceneResult ReadScene(const std::string& path);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

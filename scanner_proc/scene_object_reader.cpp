@@ -7,7 +7,7 @@
 #include "io/mesh_file.h"
 #include "rimod/object_model.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr Limits kCoordinate = {-10000.0, 10000.0};
@@ -257,4 +257,4 @@ void SceneObjectReader::CountParts(const YamlSection& section, std::size_t numbe
   if (num_parts_ > kMaxParts) section.Fail("", "too many parts in the scene");
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

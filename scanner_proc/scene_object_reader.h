@@ -9,7 +9,7 @@
 #include "scanner_proc/scene.h"
 #include "scanner_proc/yaml_section.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 // Reads objects of scene files, with the shapes and meshes that they use. Methods throw YamlError.
 class SceneObjectReader {
@@ -37,4 +37,4 @@ class SceneObjectReader {
   std::size_t num_triangles_ = 0;
 };
 
-}  // namespace rimod
+}  // namespace rimod::simulation

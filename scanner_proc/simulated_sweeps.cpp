@@ -16,7 +16,7 @@
 #include "scanner_proc/laser_scanner.h"
 #include "scanner_proc/ray_caster.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr char kStopped[] = "stopped";
@@ -235,4 +235,4 @@ std::string WriteRecording(const Scene& scene, const SweepParams& params, const 
                              ModelJson(*object));
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -10,7 +10,7 @@
 #include "rimod/sweep.h"
 #include "scanner_proc/scene.h"
 
-namespace rimod {
+namespace rimod::simulation {
 
 // Files to write; an empty path: not wanted.
 struct SweepFiles {
@@ -46,4 +46,4 @@ std::string WriteRecording(const Scene& scene, const SweepParams& params, const 
 // stand in the object's origin.
 std::vector<Sensor> RecordingSensors(const Scene& scene, const SceneObject& object);
 
-}  // namespace rimod
+}  // namespace rimod::simulation

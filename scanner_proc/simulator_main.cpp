@@ -7,12 +7,12 @@
 int main(int argc, char** argv) {
   CLI::App app("Simulates a laser scanner on a tilting unit in a scene of your making.",
                "rimod-simulator");
-  rimod::SimulatorOptions options;
-  rimod::AddSimulatorOptions(&app, &options);
+  rimod::simulation::SimulatorOptions options;
+  rimod::simulation::AddSimulatorOptions(&app, &options);
   if (const std::optional<int> exit_code = rimod::ParseCommandLine(&app, argc, argv)) {
     return *exit_code;
   }
   rimod::LogToStderr("rimod-simulator");
   const rimod::StopOnSignal signals;
-  return rimod::SimulatorProcess(std::move(options)).Run(signals.stop());
+  return rimod::simulation::SimulatorProcess(std::move(options)).Run(signals.stop());
 }

@@ -10,7 +10,7 @@
 #include "scanner_proc/live_scanner.h"
 #include "scanner_proc/scene_file.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr int kDone = 0;
@@ -137,4 +137,4 @@ int SimulatorProcess::RunLive(const std::atomic<bool>& stop) const {
   return result.num_failed > 0 ? kFailed : kDone;
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

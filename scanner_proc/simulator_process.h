@@ -13,7 +13,7 @@ namespace CLI {
 class App;
 }
 
-namespace rimod {
+namespace rimod::simulation {
 
 // The command line of rimod-simulator.
 struct SimulatorOptions {
@@ -48,4 +48,4 @@ class SimulatorProcess {
   Channels channels_;
 };
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 std::string Text(double value) {
@@ -190,4 +190,4 @@ void YamlSection::RejectOtherKeys() const {
   }
 }
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace rimod {
+namespace rimod::simulation {
 
 // A file that says something illegal; what() names file, line, key and cause.
 class YamlError : public std::runtime_error {
@@ -71,4 +71,4 @@ class YamlSection {
   std::set<std::string> known_;
 };
 
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -112,4 +112,4 @@ TEST(CurvedShapesTest, RaysAlongTheAxisHitTheLids) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -6,7 +6,7 @@
 
 #include "rimod/line_placer.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -197,4 +197,4 @@ TEST(LaserScannerTest, EdgesMixReadingsOfSurfacesThatAreClose) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation

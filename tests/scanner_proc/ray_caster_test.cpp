@@ -7,7 +7,7 @@
 
 #include "scanner_proc/curved_shapes.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 SceneObject MakeObject(Shape shape, const Eigen::Isometry3d& T_scene_object) {
@@ -142,4 +142,4 @@ TEST(SceneTest, ObjectFrameIsAtTheMiddleOfTheBottom) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -278,4 +278,4 @@ TEST(SceneFileTest, TheScenesThatComeWithTheProjectAreRead) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation

@@ -15,7 +15,7 @@
 #include "scanner_proc/laser_scanner.h"
 #include "tests/support/temporary_folder.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
@@ -322,4 +322,4 @@ TEST(RecordingTest, StoppedRecordingHasNoModelFile) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation

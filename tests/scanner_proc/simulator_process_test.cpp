@@ -15,7 +15,7 @@
 #include "scanner_proc/live_scanner.h"
 #include "tests/support/temporary_folder.h"
 
-namespace rimod {
+namespace rimod::simulation {
 namespace {
 
 constexpr char kScene[] = R"(
@@ -189,4 +189,4 @@ TEST(LiveScannerTest, StopsAtOnce) {
 }
 
 }  // namespace
-}  // namespace rimod
+}  // namespace rimod::simulation
