@@ -86,7 +86,7 @@ JsonResult ReadJson(const std::string& path) {
 
 }  // namespace
 
-RecordingResult ReadRecording(const std::string& folder) {
+RecordingResult ReadRecordingDescription(const std::string& folder) {
   RecordingResult result;
   const std::string path = DescriptionPath(folder);
   JsonResult description = ReadJson(path);
@@ -96,10 +96,19 @@ RecordingResult ReadRecording(const std::string& folder) {
   }
   Recording recording;
   const std::string complaint = SetDescription(description.json, &recording);
-  if (!complaint.empty()) {
+  if (complaint.empty()) {
+    result.recording = std::move(recording);
+  } else {
     result.error = path + ": " + complaint;
-    return result;
   }
+  return result;
+}
+
+RecordingResult ReadRecording(const std::string& folder) {
+  RecordingResult result = ReadRecordingDescription(folder);
+  if (!result.recording) return result;
+  Recording recording = *std::move(result.recording);
+  result.recording.reset();
   const FolderListing scans = ListFolder(folder, "scan_", ".pcd");
   for (const std::string& scan_path : scans.paths) {
     PointCloudResult cloud = ReadPointCloud(scan_path);

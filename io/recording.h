@@ -20,6 +20,9 @@ struct RecordingResult {
 // name. Bad scans are left out with a warning; without a single good one there is no recording.
 RecordingResult ReadRecording(const std::string& folder);
 
+// The recording that `model.json` describes, without scans.
+RecordingResult ReadRecordingDescription(const std::string& folder);
+
 // The class that the model.json in this folder names; nothing when there is none or it names no
 // valid class.
 std::optional<std::string> ReadClassName(const std::string& folder);

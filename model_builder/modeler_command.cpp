@@ -18,6 +18,7 @@
 #include "io/progress_bar.h"
 #include "io/recording.h"
 #include "io/thread_pool.h"
+#include "model_builder/live_recording.h"
 #include "rimod/model_building.h"
 
 namespace rimod {
@@ -159,7 +160,14 @@ bool Publish(const ObjectModel& model, const ModelerOptions& options, const BusP
 
 }  // namespace
 
-int RunModeler(const ModelerOptions& options, const Configuration& configuration) {
+int RunModeler(const ModelerOptions& given, const Configuration& configuration) {
+  ModelerOptions options = given;
+  if (!options.live.empty()) {
+    const int exit_code =
+        RecordLive(options.live, options.num_live_scans, options.bus, configuration.bus);
+    if (exit_code != kDone) return exit_code;
+    options.recording = options.live;
+  }
   const Built built = Build(options, configuration.pipeline);
   if (!built.model) return built.exit_code;
   const std::string error = WriteModelFile(options.out, *built.model);

@@ -9,11 +9,13 @@ namespace rimod {
 
 // What rimod-modeler was asked to do.
 struct ModelerOptions {
-  std::string recording;   // folder; one of these three is given
+  std::string recording;   // folder; one of these four is given
+  std::string live;        // folder with model.json only: scans come on the bus
   std::string cloud;       // point cloud file
   std::string mesh;        // mesh file
   std::string class_name;  // empty: what the source says
   std::string out;         // model file
+  int num_live_scans = 8;  // that end a live recording; >= 1
   int num_threads = 0;     // 0: as many as the machine has
   bool publish = false;    // also on RIMOD_MODEL
   BusOptions bus;

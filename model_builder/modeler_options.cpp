@@ -29,6 +29,12 @@ std::unique_ptr<CLI::App> MakeModelerApp(ModelerCommandLine* command_line) {
                    "Scans round the object: a folder with model.json and scan_*.pcd")
       ->type_name("DIR");
   source
+      ->add_option("--live", options.live,
+                   "Record scans from RIMOD_SCAN into a folder that holds model.json alone (class, "
+                   "pose and box of the object in the scans' local frame), then build from them; "
+                   "Ctrl-C ends the recording before --scans have come")
+      ->type_name("DIR");
+  source
       ->add_option("--cloud", options.cloud,
                    "Points of the object alone, in its object frame; a model.json beside it may "
                    "name the class")
@@ -36,6 +42,10 @@ std::unique_ptr<CLI::App> MakeModelerApp(ModelerCommandLine* command_line) {
   source->add_option("--mesh", options.mesh, "The object's surface, in its object frame")
       ->type_name("FILE.obj|ply|stl");
   source->require_option(1);
+  app->add_option("--scans", options.num_live_scans,
+                  "Scans that a live recording takes, by default 8")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
   app->add_option("--class", options.class_name, "Name of the object's class")->type_name("NAME");
   app->add_option("--out", options.out, "The model file to write")
       ->type_name("FILE.rimod")
