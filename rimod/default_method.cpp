@@ -63,12 +63,6 @@ std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondenc
   return hypotheses;
 }
 
-double PixelsAcross(const Scene& scene, const ObjectModel& model,
-                    const Eigen::Isometry3f& T_sensor_object) {
-  const double distance = std::max<double>(T_sensor_object.translation().norm(), 1e-3);
-  return model.Diameter() / distance / scene.grid().resolution;
-}
-
 // Scores all hypotheses before refinement, each on its own.
 void ScoreHypotheses(const Scene& scene, const ModelDatabase& database,
                      const PipelineParams& params, const Execution& execution,
@@ -80,8 +74,8 @@ void ScoreHypotheses(const Scene& scene, const ModelDatabase& database,
       const double score =
           RankingScore(scene, database.ranking_models()[hypothesis.model],
                        hypothesis.T_sensor_object, params.ranking.coarse_epsilon, params.ranking);
-      const double pixels =
-          PixelsAcross(scene, database.models()[hypothesis.model], hypothesis.T_sensor_object);
+      const double pixels = PixelsAcross(scene, database.models()[hypothesis.model],
+                                         hypothesis.T_sensor_object.cast<double>());
       hypothesis.score =
           std::max(score, 0.0) / (1.0 + params.ranking.pixels_half / (pixels * pixels));
     }
@@ -134,9 +128,10 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
         scene, model, hypothesis.T_sensor_object, params.ranking.fine_epsilon, params.ranking);
     if (!figures) return;
     hypothesis.figures = *figures;
-    hypothesis.score = Probability(
-        kRankWeights, RankFigures(*figures, PixelsAcross(scene, database.models()[hypothesis.model],
-                                                         hypothesis.T_sensor_object)));
+    hypothesis.score =
+        Probability(kRankWeights,
+                    RankFigures(*figures, PixelsAcross(scene, database.models()[hypothesis.model],
+                                                       hypothesis.T_sensor_object.cast<double>())));
   });
 }
 

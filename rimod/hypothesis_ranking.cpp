@@ -77,6 +77,13 @@ RankingModel MakeRankingModel(const ObjectModel& model) {
   return ranking;
 }
 
+double PixelsAcross(const Scene& scene, const ObjectModel& model,
+                    const Eigen::Isometry3d& T_sensor_object) {
+  constexpr double kNearest = 1e-3;  // m
+  const double distance = std::max(T_sensor_object.translation().norm(), kNearest);
+  return model.Diameter() / distance / scene.grid().resolution;
+}
+
 int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object) {
   const Eigen::Vector3f to_sensor =
       T_sensor_object.linear().transpose() * -T_sensor_object.translation() - model.centre;

@@ -46,6 +46,10 @@ struct RankingModel {
 
 RankingModel MakeRankingModel(const ObjectModel& model);
 
+// Pixels that a model's diameter spans at a pose.
+double PixelsAcross(const Scene& scene, const ObjectModel& model,
+                    const Eigen::Isometry3d& T_sensor_object);
+
 // The view nearest to where the sensor stands; -1 without views.
 int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object);
 
