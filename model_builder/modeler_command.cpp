@@ -136,25 +136,21 @@ void PrintSummary(const ObjectModel& model, const std::string& path) {
 }
 
 // Sends the model on the bus; false when that is not possible.
-bool Publish(const ObjectModel& model, const ModelerOptions& options, const BusParams& params) {
-  const ChannelsResult channels = ChannelsFrom(options.bus);
-  if (!channels.channels) {
-    spdlog::error("{}", channels.error);
-    return false;
-  }
+bool Publish(const ObjectModel& model, const ModelerOptions& options, const std::string& channel,
+             const BusParams& params) {
   const std::unique_ptr<lcm::LCM> lcm = OpenLcm(LcmUrl(options.bus));
   if (!lcm) return false;
   const std::chrono::microseconds now = std::chrono::duration_cast<std::chrono::microseconds>(
       std::chrono::system_clock::now().time_since_epoch());
   PacedPublisher publisher(lcm.get(), params);
   const std::vector<object_model_t> sections = ToSections(model, now.count());
-  publisher.PublishAll(channels.channels->model, sections);
+  publisher.PublishAll(channel, sections);
   publisher.Flush();
   if (publisher.num_failed() > 0) {
     spdlog::error("{} of {} messages could not be sent", publisher.num_failed(), sections.size());
     return false;
   }
-  spdlog::info("sent on {} in {} messages", channels.channels->model, sections.size());
+  spdlog::info("sent on {} in {} messages", channel, sections.size());
   return true;
 }
 
@@ -168,6 +164,11 @@ int RunModeler(const ModelerOptions& given, const Configuration& configuration) 
     if (exit_code != kDone) return exit_code;
     options.recording = options.live;
   }
+  const ChannelsResult channels = ChannelsFrom(options.bus);
+  if (!channels.channels) {
+    spdlog::error("{}", channels.error);
+    return kBadUsage;
+  }
   const Built built = Build(options, configuration.pipeline);
   if (!built.model) return built.exit_code;
   const std::string error = WriteModelFile(options.out, *built.model);
@@ -179,7 +180,8 @@ int RunModeler(const ModelerOptions& given, const Configuration& configuration) 
     spdlog::warn("{}: does not end in .rimod: no folder of models will show it", options.out);
   }
   PrintSummary(*built.model, options.out);
-  const bool sent = !options.publish || Publish(*built.model, options, configuration.bus);
+  const bool sent = !options.publish ||
+                    Publish(*built.model, options, channels.channels->model, configuration.bus);
   return sent ? kDone : kFailed;
 }
 
