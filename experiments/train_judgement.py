@@ -2,11 +2,12 @@
 """Learn the default method's weights from figures of labelled scans.
 
 usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv [--data ..] [--out FILE.cpp]
-       train_judgement.py --models MODELS_DIR --data .. --folds 5 --only judgement
+       train_judgement.py --models MODELS_DIR --data .. --folds 5
 
 MODELS_DIR has <class>/model.json with box and symmetry, LABELS.json and model.json are in the format of
-the benchmark sets, FIGURES.csv comes from rimod-dump-figures. Writes rimod/judgement_weights.cpp: two
-logistic regressions, one for ranking candidates (lines R) and one for judging them (lines J). A candidate
+the benchmark sets, FIGURES.csv comes from rimod-dump-figures. Writes rimod/judgement_weights.cpp: a
+logistic regression for ranking candidates (lines R) and boosted trees for judging them (lines J; needs
+scikit-learn, Debian's python3-sklearn). A candidate
 is right within 10 cm and 15 degrees of an object of its class (modulo its symmetry) and wrong when its
 centre is farther than max(0.15 m, 0.25 diameters) from all of them; those in between are left out. With
 --folds the scans are split and the log loss and the average precision over the held-out candidates are printed,
@@ -108,22 +109,54 @@ def predict(model, X):
     return 1 / (1 + np.exp(-np.clip(((X - mean) / scale) @ w + bias, -40, 40)))
 
 
+class Trees:
+    """Gradient boosting for the judgement; the settings keep the leaves well filled."""
+
+    def __init__(self, X, y):
+        from sklearn.ensemble import HistGradientBoostingClassifier
+        self.fitted = HistGradientBoostingClassifier(
+            max_iter=200, learning_rate=0.05, max_leaf_nodes=10, l2_regularization=3.0,
+            min_samples_leaf=20, early_stopping=False, random_state=0).fit(X, y)
+
+    def predict(self, X):
+        return self.fitted.predict_proba(X)[:, 1]
+
+    def nodes(self):
+        """bias, roots, nodes (feature, threshold, left, right, value)"""
+        roots, nodes = [], []
+        for predictors in self.fitted._predictors:
+            first = len(nodes)
+            roots.append(first)
+            for n in predictors[0].nodes:
+                if n['is_leaf']:
+                    nodes.append((-1, 0.0, 0, 0, float(n['value'])))
+                else:
+                    nodes.append((int(n['feature_idx']), float(n['num_threshold']),
+                                  first + int(n['left']), first + int(n['right']), 0.0))
+        return float(np.ravel(self.fitted._baseline_prediction)[0]), roots, nodes
+
+
 def average_precision(y, p):
     y = y[np.argsort(-p, kind='stable')]
     precision = np.cumsum(y) / np.arange(1, len(y) + 1)
     return float((precision * y).sum() / max(y.sum(), 1))
 
 
-def write(path, rank, judgement):
+def write(path, rank, trees):
     def array(v):
-        return '{' + ', '.join(f'{x:.7g}' for x in v) + '}'
-    text = ['#include "rimod/judgement.h"', '',
-            '// Written by experiments/train_judgement.py; docs/accuracy.md tells on what.', '',
-            'namespace rimod {', '']
-    for name, (mean, scale, w, bias) in (('kRankWeights', rank), ('kJudgementWeights', judgement)):
-        text += [f'const LogisticWeights {name} = {{', f'    {array(mean)},', f'    {array(scale)},', f'    {array(w)},', f'    {bias:.7g}}};', '']
-    text += ['}  // namespace rimod', '']
-    open(path, 'w').write('\n'.join(text))
+        return '{' + ', '.join(f'{x:.9g}' for x in v) + '}'
+    mean, scale, w, rank_bias = rank
+    bias, roots, nodes = trees.nodes()
+    lines = ['#include "rimod/judgement.h"', '',
+             '// Written by experiments/train_judgement.py; docs/accuracy.md tells on what.', '',
+             '// clang-format off', 'namespace rimod {', '',
+             'const LogisticWeights kRankWeights = {', f'    {array(mean)},', f'    {array(scale)},',
+             f'    {array(w)},', f'    {rank_bias:.9g}}};', '',
+             'const BoostedTrees kJudgementTrees = {', f'    {bias:.9g},', f'    {array(roots)},', '    {']
+    for k in range(0, len(nodes), 4):
+        lines.append('     ' + ' '.join('{%d, %.9g, %d, %d, %.9g},' % n for n in nodes[k:k + 4]))
+    lines += ['    }};', '', '}  // namespace rimod', '']
+    open(path, 'w').write('\n'.join(lines))
 
 
 def main():
@@ -155,12 +188,14 @@ def main():
             fold = np.array([ids[s] for s in scans])
             p = np.zeros(len(y))
             for k in range(a.folds):
-                p[fold == k] = predict(fit(X[known & (fold != k)], y[known & (fold != k)], a.ridge), X[fold == k])
+                X_train, y_train = X[known & (fold != k)], y[known & (fold != k)]
+                p[fold == k] = (predict(fit(X_train, y_train, a.ridge), X[fold == k]) if kind == 'R'
+                                else Trees(X_train, y_train).predict(X[fold == k]))
             q = np.clip(p[known], 1e-6, 1 - 1e-6)
             loss = -np.mean(y[known] * np.log(q) + (1 - y[known]) * np.log(1 - q))
             print(f'{kind}: held out: log loss {loss:.5f}, average precision {average_precision(y[known], p[known]):.4f}')
         else:
-            learnt[kind] = fit(X[known], y[known], a.ridge)
+            learnt[kind] = fit(X[known], y[known], a.ridge) if kind == 'R' else Trees(X[known], y[known])
     if not a.folds:
         write(a.out, learnt['R'], learnt['J'])
 

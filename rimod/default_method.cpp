@@ -186,7 +186,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene,
     result.evidence =
         GatherEvidence(scene, model, result.candidate.T_sensor_object, params.evidence);
     result.candidate.score =
-        Probability(kJudgementWeights, JudgementFigures(result.evidence, result.figures));
+        Probability(kJudgementTrees, JudgementFigures(result.evidence, result.figures));
   });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const JudgedCandidate& a, const JudgedCandidate& b) {

@@ -43,7 +43,9 @@ ObjectModel Thin(const ObjectModel& model, double spacing) {
 struct Counts {
   int rendered = 0, matched = 0, nearly = 0, through = 0, occluded = 0, no_return = 0;
   int jump = 0, goes_on = 0, hidden = 0, silhouette = 0;
-  double residual = 0.0, cosine = 0.0;
+  int strict = 0, slightly_front = 0, slightly_behind = 0;
+  std::array<int, 4> side_jump{}, side_goes_on{};  // right, left, below, above
+  double residual = 0.0, signed_residual = 0.0, cosine = 0.0;
   int cosines = 0;
   Eigen::Matrix3f normal_products = Eigen::Matrix3f::Zero();
 };
@@ -126,6 +128,8 @@ class Comparison {
     if (std::abs(behind) < tolerance) {
       ++counts_.matched;
       counts_.residual += std::abs(behind) / tolerance;
+      counts_.signed_residual += behind / tolerance;
+      if (std::abs(behind) < 0.5f * tolerance) ++counts_.strict;
       explained_.push_back(pixel);
       const Eigen::Vector3f& scene_normal = scene_.normal(pixel);
       if (scene_normal.squaredNorm() > 0.0f) {
@@ -134,12 +138,18 @@ class Comparison {
       }
       counts_.normal_products += normal * normal.transpose();
       CompareSilhouette(row, column, range);
-    } else if (NeighbourMatches(row, column, range, tolerance)) {
+      return;
+    }
+    const float slight = static_cast<float>(params_.slight_difference);
+    if (NeighbourMatches(row, column, range, tolerance)) {
       ++counts_.nearly;
+      CompareSilhouette(row, column, range);
     } else if (behind > 0.0f) {
       ++counts_.through;
+      if (behind < slight) ++counts_.slightly_behind;
     } else {
       ++counts_.occluded;
+      if (behind > -slight) ++counts_.slightly_front;
     }
   }
 
@@ -148,7 +158,8 @@ class Comparison {
     const int gap =
         std::max(1, static_cast<int>(std::lround(params_.silhouette_gap / pixel_size_)));
     constexpr std::array<std::array<int, 2>, 4> kSides = {{{0, 1}, {0, -1}, {1, 0}, {-1, 0}}};
-    for (const std::array<int, 2>& side : kSides) {
+    for (std::size_t i = 0; i < kSides.size(); ++i) {
+      const std::array<int, 2>& side = kSides[i];
       if (Rendered(row + side[0], column + side[1])) continue;
       const int r = row + gap * side[0], c = column + gap * side[1];
       if (Rendered(r, c)) continue;
@@ -163,10 +174,12 @@ class Comparison {
       const float behind = scene_.range(pixel) - range;
       if (behind > params_.continue_tolerance) {
         ++counts_.jump;
+        ++counts_.side_jump[i];
       } else if (behind < -params_.continue_tolerance) {
         ++counts_.hidden;
       } else {
         ++counts_.goes_on;
+        ++counts_.side_goes_on[i];
       }
     }
   }
@@ -255,6 +268,18 @@ class Comparison {
       v[kThirdNormal] = solver.eigenvalues()(0);
     }
     v[kRelief] = Relief();
+    v[kStrictlyMatched] = counts_.strict / n;
+    v[kBias] = Share(counts_.signed_residual, counts_.matched);
+    v[kSlightlyInFront] = counts_.slightly_front / n;
+    v[kSlightlyBehind] = counts_.slightly_behind / n;
+    v[kWorstSide] = 1.0;
+    for (std::size_t i = 0; i < counts_.side_jump.size(); ++i) {
+      constexpr int kMinPixels = 2;
+      const int known = counts_.side_jump[i] + counts_.side_goes_on[i];
+      if (known < kMinPixels) continue;
+      v[kWorstSide] = std::min(v[kWorstSide], Share(counts_.side_jump[i], known));
+      v[kKnownSides] += 0.25;
+    }
   }
 
   const Scene& scene_;
@@ -280,6 +305,7 @@ void EvidenceParams::Validate() const {
   CheckWithin("evidence max_tolerance", max_tolerance, depth_tolerance, 10.0);
   CheckWithin("evidence silhouette_gap", silhouette_gap, 1e-3, 1.0);
   CheckWithin("evidence continue_tolerance", continue_tolerance, 1e-3, 10.0);
+  CheckWithin("evidence slight_difference", slight_difference, max_tolerance, 10.0);
   CheckWithin("evidence support_height", support_height, 1e-3, 1.0);
 }
 

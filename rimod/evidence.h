@@ -22,7 +22,8 @@ struct EvidenceParams {
   double max_tolerance = 0.10;    // m, on surfaces seen at a flat angle; >= depth_tolerance
   double silhouette_gap = 0.03;   // m, how far beside the silhouette is looked; > 0
   double continue_tolerance = 0.06;  // m, a surface going on past the silhouette; > 0
-  double support_height = 0.04;      // m, around the object's bottom; > 0
+  double slight_difference = 0.12;  // m, depth differences up to this are "slight"; > max_tolerance
+  double support_height = 0.04;     // m, around the object's bottom; > 0
   void Validate() const;
 };
 
@@ -46,9 +47,15 @@ enum EvidenceIndex {
   kLogRenderedPixels,    // of 1 + rendered pixels
   kDistance,             // m
   kTilt,                 // rad, of the object's z-axis
-  kSecondNormal,  // spread of the matched normals: second eigenvalue of their products, 0 .. 0.5
-  kThirdNormal,   // third eigenvalue, 0 .. 0.33
-  kRelief,        // share of matched pixels that lie off the plane through all matched ones
+  kSecondNormal,     // spread of the matched normals: second eigenvalue of their products, 0 .. 0.5
+  kThirdNormal,      // third eigenvalue, 0 .. 0.33
+  kRelief,           // share of matched pixels that lie off the plane through all matched ones
+  kStrictlyMatched,  // share of the rendered pixels that match twice as well
+  kBias,             // mean signed depth difference of matched pixels over the tolerance
+  kSlightlyInFront,  // share where the scene is nearer, but by little: rather wrong than occluded
+  kSlightlyBehind,   // share where the scene is farther by little
+  kWorstSide,        // least jump / (jump + continue) of the silhouette's four sides
+  kKnownSides,       // sides of which that is known, share
   kEvidenceCount
 };
 

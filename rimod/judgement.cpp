@@ -20,6 +20,17 @@ double Probability(const LogisticWeights& weights, const std::vector<double>& fi
   return 1.0 / (1.0 + std::exp(-sum));
 }
 
+double Probability(const BoostedTrees& trees, const std::vector<double>& figures) {
+  double sum = trees.bias;
+  for (const int root : trees.roots) {
+    const TreeNode* node = &trees.nodes[root];
+    while (node->feature >= 0)
+      node = &trees.nodes[figures[node->feature] <= node->threshold ? node->left : node->right];
+    sum += node->value;
+  }
+  return 1.0 / (1.0 + std::exp(-sum));
+}
+
 std::vector<double> RankFigures(const RankingFigures& f, double pixels_across) {
   const double size = std::log(std::max(pixels_across, 1.0));
   return {f.at_place,

@@ -18,8 +18,24 @@ struct LogisticWeights {
   double bias = 0.0;
 };
 
-// Probability for figures of the same number as the weights.
+// One node of a decision tree: figures at or below the threshold go left. Leaves have feature -1.
+struct TreeNode {
+  int feature = -1;
+  double threshold = 0.0;
+  int left = 0, right = 0;  // in BoostedTrees::nodes
+  double value = 0.0;       // of a leaf: what it adds to the logit
+};
+
+// Gradient-boosted decision trees: the logit is the sum of a bias and of one leaf a tree.
+struct BoostedTrees {
+  double bias = 0.0;
+  std::vector<int> roots;
+  std::vector<TreeNode> nodes;
+};
+
+// Probability for figures of the same number as the weights, or as the trees were learnt on.
 double Probability(const LogisticWeights& weights, const std::vector<double>& figures);
+double Probability(const BoostedTrees& trees, const std::vector<double>& figures);
 
 // The figures that a hypothesis is ranked by: those of the view's points, their ratios and the
 // object's size in the image (pixels across).
@@ -30,6 +46,6 @@ std::vector<double> RankFigures(const RankingFigures& figures, double pixels_acr
 std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& figures);
 
 extern const LogisticWeights kRankWeights;
-extern const LogisticWeights kJudgementWeights;
+extern const BoostedTrees kJudgementTrees;
 
 }  // namespace rimod
