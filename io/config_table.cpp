@@ -175,6 +175,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"evidence", "depth_tolerance", &e.depth_tolerance, "m, measured against rendered depth on a surface seen head-on; > 0"},
       {"evidence", "slope_tolerance", &e.slope_tolerance, "of a pixel's size times the surface's slope, added to it; >= 0"},
       {"evidence", "max_tolerance", &e.max_tolerance, "m, on surfaces seen at a flat angle; >= depth_tolerance"},
+      {"evidence", "slight_difference", &e.slight_difference, "m, depth differences up to this are slight; > max_tolerance"},
       {"evidence", "silhouette_gap", &e.silhouette_gap, "m, how far beside the silhouette is looked; > 0"},
       {"evidence", "continue_tolerance", &e.continue_tolerance, "m, a surface going on past the silhouette; > 0"},
       {"evidence", "support_height", &e.support_height, "m, around the object's bottom; > 0"},
