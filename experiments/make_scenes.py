@@ -2,6 +2,7 @@
 """Make labelled scans of random offices with rimod-simulator, as training data for the judgement.
 
 usage: make_scenes.py --furniture FOLDER --simulator rimod-simulator --out OUT [--scenes 150] [--seed 1] [--jobs 2]
+                      [--mean-visible 1.0]
 
 FOLDER holds the .sh3f files of Debian's package sweethome3d-furniture (/usr/share/sweethome3d/furniture); the
 meshes used are cut out of them, scaled to their catalogue sizes and written to OUT/meshes. Writes
@@ -11,7 +12,8 @@ meshes used are cut out of them, scaled to their catalogue sizes and written to 
     OUT/scenes/*.yaml                             the scene files of all of them
 
 Scene NNN depends on the seed and its number only: more scenes leave the first ones as they are. A scene in which
-one of the objects can hardly be seen is thrown away and drawn again, up to ATTEMPTS times.
+one of the objects can hardly be seen, or of whose objects more is in view than --mean-visible, is thrown away and
+drawn again, up to ATTEMPTS times.
 """
 import argparse
 import concurrent.futures
@@ -577,7 +579,7 @@ def items_of(number, seed, classes):
     return items
 
 
-def make_scan(number, out, simulator, seed, furniture, classes):
+def make_scan(number, out, simulator, seed, furniture, classes, mean_visible):
     """The scan's labels. Scenes are drawn until every object can be seen; the best of all attempts counts."""
     name, best, items = f'{number:03d}', None, items_of(number, seed, classes)
     truth, path, log = (out / 'scenes' / f'{name}.truth.json', out / 'scenes' / f'{name}.yaml', out / 'train' / 'logs' / f'{name}.lcm')
@@ -590,10 +592,11 @@ def make_scan(number, out, simulator, seed, furniture, classes):
         simulate(simulator, [path, '--log', log, '--truth', truth])
         objects = json.loads(truth.read_text())['scans'][0]['objects']
         seen = sum(o['points'] >= LEAST_POINTS and o['visible'] >= LEAST_VISIBLE for o in objects)
-        quality = seen - 2 * (len(objects) - seen)
+        visible = sum(o['visible'] for o in objects) / max(len(objects), 1)
+        quality = seen - 2 * (len(objects) - seen) - max(visible - mean_visible, 0)
         if best is None or quality > best[0]:
             best = (quality, text, objects)
-        if seen == len(items):
+        if seen == len(items) and visible <= mean_visible:
             break
     else:
         path.write_text(best[1])
@@ -610,6 +613,7 @@ def main():
     parser.add_argument('--scenes', type=int, default=150)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--jobs', type=int, default=2)
+    parser.add_argument('--mean-visible', type=float, default=1.0, help='smaller: more of the objects is hidden')
     parser.add_argument('--no-recordings', action='store_true', help='OUT has the models already')
     a = parser.parse_args()
     furniture = Furniture(a.furniture, a.out / 'meshes')
@@ -623,7 +627,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         if not a.no_recordings:
             list(pool.map(lambda p: record(p[1], a.out, a.simulator, a.seed * 1000 + p[0]), enumerate(classes)))
-        scans = list(pool.map(lambda n: make_scan(n, a.out, a.simulator, a.seed, furniture, classes), range(a.scenes)))
+        scans = list(pool.map(lambda n: make_scan(n, a.out, a.simulator, a.seed, furniture, classes, a.mean_visible), range(a.scenes)))
     (a.out / 'train' / 'labels.json').write_text(json.dumps({'scans': scans}, indent=0))
     count = {}
     for scan in scans:
