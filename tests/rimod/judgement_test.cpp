@@ -31,6 +31,21 @@ TEST(ProbabilityTest, IsTheLogisticFunctionOfStandardisedFigures) {
   EXPECT_NEAR(Probability(weights, {-1000.0, 0.0}), 0.0, 1e-12);
 }
 
+TEST(ProbabilityTest, IsTheLogisticFunctionOfTheLeavesOfTheTrees) {
+  // The first tree asks for figure 0, then 1; the second is a leaf.
+  BoostedTrees trees;
+  trees.bias = 0.5;
+  trees.roots = {0, 5};
+  trees.nodes = {{0, 1.0, 1, 2, 0.0},  {-1, 0.0, 0, 0, -2.0}, {1, 0.0, 3, 4, 0.0},
+                 {-1, 0.0, 0, 0, 1.0}, {-1, 0.0, 0, 0, 3.0},  {-1, 0.0, 0, 0, 0.25}};
+  const auto logistic = [](double x) { return 1.0 / (1.0 + std::exp(-x)); };
+  EXPECT_NEAR(Probability(trees, {0.0, 7.0}), logistic(0.5 - 2.0 + 0.25), 1e-12);
+  EXPECT_NEAR(Probability(trees, {1.0, 7.0}), logistic(0.5 - 2.0 + 0.25), 1e-12);  // at: left
+  EXPECT_NEAR(Probability(trees, {1.1, 0.0}), logistic(0.5 + 1.0 + 0.25), 1e-12);
+  EXPECT_NEAR(Probability(trees, {1.1, 0.1}), logistic(0.5 + 3.0 + 0.25), 1e-12);
+  EXPECT_NEAR(Probability(BoostedTrees{}, {}), 0.5, 1e-12);
+}
+
 void ExpectUsable(const LogisticWeights& weights, std::size_t figures) {
   ASSERT_EQ(weights.means.size(), figures);
   ASSERT_EQ(weights.scales.size(), figures);
@@ -44,7 +59,22 @@ void ExpectUsable(const LogisticWeights& weights, std::size_t figures) {
 
 TEST(LearntWeightsTest, FitTheFigures) {
   ExpectUsable(kRankWeights, RankFigures(RankingFigures{}, 50.0).size());
-  ExpectUsable(kJudgementWeights, JudgementFigures(Evidence{}, RankingFigures{}).size());
+}
+
+TEST(LearntTreesTest, FitTheFiguresAndEnd) {
+  const int figures = static_cast<int>(JudgementFigures(Evidence{}, RankingFigures{}).size());
+  const int size = static_cast<int>(kJudgementTrees.nodes.size());
+  EXPECT_FALSE(kJudgementTrees.roots.empty());
+  EXPECT_TRUE(std::isfinite(kJudgementTrees.bias));
+  for (const int root : kJudgementTrees.roots) EXPECT_TRUE(root >= 0 && root < size);
+  for (int i = 0; i < size; ++i) {
+    const TreeNode& node = kJudgementTrees.nodes[i];
+    EXPECT_TRUE(std::isfinite(node.threshold) && std::isfinite(node.value)) << i;
+    if (node.feature < 0) continue;
+    EXPECT_LT(node.feature, figures) << i;
+    // Children come after their parent: no path runs in circles.
+    EXPECT_TRUE(node.left > i && node.left < size && node.right > i && node.right < size) << i;
+  }
 }
 
 TEST(LearntWeightsTest, GiveProbabilitiesForAnyFigures) {
@@ -55,7 +85,7 @@ TEST(LearntWeightsTest, GiveProbabilitiesForAnyFigures) {
     const double rank = Probability(kRankWeights, RankFigures(figures, pixels));
     EXPECT_TRUE(rank >= 0.0 && rank <= 1.0) << rank;
     const Evidence evidence = i == 0 ? Evidence{} : RandomEvidence(&random);
-    const double judged = Probability(kJudgementWeights, JudgementFigures(evidence, figures));
+    const double judged = Probability(kJudgementTrees, JudgementFigures(evidence, figures));
     EXPECT_TRUE(judged >= 0.0 && judged <= 1.0) << judged;
   }
 }
