@@ -15,13 +15,13 @@ struct SurfaceSample {
 
 struct RefinementParams {
   int coarse_iterations = 6;        // of every candidate, upright (4 degrees of freedom); 0 .. 100
-  int fine_iterations = 8;          // of the best candidates, all degrees of freedom; 0 .. 100
+  int fine_iterations = 10;         // of the best candidates, all degrees of freedom; 0 .. 100
   double coarse_gate = 0.15;        // m, farther pairs are left out at first ..; > 0
   double fine_gate = 0.05;          // m, .. and in the end; > 0
   double judged_first_gate = 0.08;  // m, the same for the refinement before judging
   double judged_last_gate = 0.03;   // m
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
-  double tilt_damping = 0.3;        // the same for the tilt from the vertical; > 0
+  double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
   void Validate() const;
 };
 
