@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "io/files.h"
-#include "tests/support/matchers.h"
 #include "tests/io/random_values.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_matchers.h"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "io/point_cloud_file.h"
-#include "tests/support/matchers.h"
 #include "tests/io/random_values.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/text_matchers.h"
 

@@ -8,8 +8,8 @@
 #include "io/feature_messages.h"
 #include "io/range_image_messages.h"
 #include "io/scan_messages.h"
-#include "tests/io/random_values.h"
 #include "rimod/object_model_t.hpp"
+#include "tests/io/random_values.h"
 
 namespace rimod {
 namespace {
