@@ -36,13 +36,18 @@ class Nearest {
   void Set(double range, const Eigen::Vector3d& normal) {
     max_range_ = range;
     point_ = SurfacePoint{range, normal};
+    found_ = true;
   }
-  const std::optional<SurfacePoint>& point() const { return point_; }
+  std::optional<SurfacePoint> point() const {
+    if (!found_) return std::nullopt;
+    return point_;
+  }
 
  private:
   double min_range_;
   double max_range_;
-  std::optional<SurfacePoint> point_;
+  bool found_ = false;
+  SurfacePoint point_;
 };
 
 void IntersectDisc(double height, double radius, const Eigen::Vector3d& origin,
