@@ -10,6 +10,7 @@
 #include "bot_core/planar_lidar_t.hpp"
 #include "bot_core/rigid_transform_t.hpp"
 #include "io/laser_messages.h"
+#include "io/raw_subscription.h"
 #include "rimod/status_t.hpp"
 #include "rimod/sweep_assembler.h"
 #include "scanner_proc/live_scanner.h"
@@ -90,22 +91,25 @@ TEST(SimulatorProcessTest, SeedOfTheCommandLineCounts) {
 // Listens on the same instance: memq:// is private to it.
 struct Listener {
   explicit Listener(lcm::LCM* lcm) {
-    lcm->subscribe("L", &Listener::OnLine, this);
-    lcm->subscribe("P", &Listener::OnPose, this);
-    lcm->subscribe("RIMOD_STATUS", &Listener::OnStatus, this);
-  }
-  void OnLine(const lcm::ReceiveBuffer*, const std::string&, const bot_core::planar_lidar_t* line) {
-    ++num_lines;
-    Append(assembler.AddLine(*FromMessage(*line).line));
-  }
-  void OnPose(const lcm::ReceiveBuffer*, const std::string&,
-              const bot_core::rigid_transform_t* pose) {
-    ++num_poses;
-    Append(assembler.AddPose(*FromMessage(*pose).pose));
-  }
-  void OnStatus(const lcm::ReceiveBuffer*, const std::string&, const status_t* message) {
-    last_status = *message;
-    ++num_status;
+    constexpr int kQueueCapacity = 1000;
+    lines = SubscribeTo<bot_core::planar_lidar_t>(
+        lcm, "L", kQueueCapacity, observer, [this](const bot_core::planar_lidar_t& line) {
+          ++num_lines;
+          Append(assembler.AddLine(*FromMessage(line).line));
+          return std::string();
+        });
+    poses = SubscribeTo<bot_core::rigid_transform_t>(
+        lcm, "P", kQueueCapacity, observer, [this](const bot_core::rigid_transform_t& pose) {
+          ++num_poses;
+          Append(assembler.AddPose(*FromMessage(pose).pose));
+          return std::string();
+        });
+    statuses = SubscribeTo<status_t>(lcm, "RIMOD_STATUS", kQueueCapacity, observer,
+                                     [this](const status_t& message) {
+                                       ++num_status;
+                                       last_status = message;
+                                       return std::string();
+                                     });
   }
   void Append(std::vector<Sweep> ended) {
     for (Sweep& sweep : ended) sweeps.push_back(std::move(sweep));
@@ -119,6 +123,11 @@ struct Listener {
   std::vector<Sweep> sweeps;
   int num_lines = 0, num_poses = 0, num_status = 0;
   status_t last_status{};
+  SubscriptionObserver observer{[](const std::string&) {},
+                                [](const std::string& channel, const std::string& cause) {
+                                  ADD_FAILURE() << channel << ": " << cause;
+                                }};
+  std::unique_ptr<BytesSubscription> lines, poses, statuses;
 };
 
 Scene MakeScene() {
