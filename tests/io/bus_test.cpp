@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "io/bus_params.h"
+#include "io/raw_subscription.h"
 
 namespace rimod {
 namespace {
@@ -47,11 +48,8 @@ TEST(BusTest, ASignalThatInterruptsTheWaitDoesNotEndTheLoop) {
 TEST(BusTest, IdleIsCalledAlsoWhileMessagesKeepComing) {
   lcm::LCM lcm("memq://");
   std::atomic<bool> stop = false;
-  struct Echo {
-    void OnMessage(const lcm::ReceiveBuffer*, const std::string&) { lcm->publish("A", "x", 1); }
-    lcm::LCM* lcm;
-  } echo = {&lcm};
-  lcm.subscribe("A", &Echo::OnMessage, &echo);
+  const BytesSubscription echo(&lcm, "A", 10, {},
+                               [&lcm](const void*, std::size_t) { lcm.publish("A", "x", 1); });
   lcm.publish("A", "x", 1);
   int num_idle = 0;
   const auto begin = Clock::now();

@@ -11,7 +11,10 @@ using Clock = std::chrono::steady_clock;
 BusProbe::BusProbe() : lcm_(kDefaultLcmUrl) {
   if (!lcm_.good()) throw std::runtime_error("no LCM in the private network");
   constexpr int kPlenty = 100000;
-  lcm_.subscribe(".*", &BusProbe::OnMessage, this)->setQueueCapacity(kPlenty);
+  // Not lcm_.subscribe(): GCC 12's -fsanitize=undefined breaks its call of the member function.
+  lcm_subscription_t* const all =
+      lcm_subscribe(lcm_.getUnderlyingLCM(), ".*", &BusProbe::OnMessage, this);
+  lcm_subscription_set_queue_capacity(all, kPlenty);
 }
 
 void BusProbe::Publish(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -54,9 +57,9 @@ std::optional<status_t> BusProbe::Status(const std::string& executable) {
   return last;
 }
 
-void BusProbe::OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+void BusProbe::OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* self) {
   const auto* const bytes = static_cast<const std::uint8_t*>(buffer->data);
-  received_[channel].emplace_back(bytes, bytes + buffer->data_size);
+  static_cast<BusProbe*>(self)->received_[channel].emplace_back(bytes, bytes + buffer->data_size);
 }
 
 std::string SumOf(const std::vector<std::uint8_t>& bytes) {

@@ -18,6 +18,8 @@ namespace rimod {
 class BusProbe {
  public:
   BusProbe();
+  BusProbe(const BusProbe&) = delete;
+  BusProbe& operator=(const BusProbe&) = delete;
 
   void Publish(const std::string& channel, const std::vector<std::uint8_t>& bytes);
   template <typename Message>
@@ -58,7 +60,7 @@ class BusProbe {
   void Forget() { received_.clear(); }
 
  private:
-  void OnMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* self);
 
   lcm::LCM lcm_;
   std::map<std::string, std::vector<std::vector<std::uint8_t>>> received_;
