@@ -25,7 +25,7 @@ struct Options {
   std::vector<std::string> scans;
 };
 
-// One line a candidate: kind (R ranked, J judged), scan, class, pose, then the figures.
+// One line a candidate: kind (P proposed, R ranked, J judged), scan, class, pose, then the figures.
 class FigureWriter {
  public:
   explicit FigureWriter(const std::string& path) : out_(path) { out_.precision(9); }
@@ -50,25 +50,32 @@ void DumpScan(const NamedScan& named, const ModelDatabase& database, const Pipel
   const RangeImage image = ComputeRangeImage(named.scan, params, execution);
   const FeatureSet features = ExtractFeatures(image, params, execution);
   const Scene scene(image, params.evidence.normal_radius, execution);
-  PipelineParams all_ranked = params;
-  all_ranked.ranking.max_judged = params.ranking.max_refined;
+  const Eigen::Isometry3d& T_local_sensor = image.T_local_sensor();
+  const auto name = [&](int model) { return database.models()[model].name; };
+  const auto write = [&](char kind, const Hypothesis& h) {
+    writer->Write(kind, named.name, name(h.model),
+                  T_local_sensor * h.T_sensor_object.cast<double>(), RankFigures(h.figures));
+  };
+  PipelineParams all = params;
+  all.ranking.max_refined = params.ranking.max_scanned;
   int num_found = 0;
-  std::vector<RankedCandidate> ranked =
-      RankCandidates(scene, features, database, all_ranked, execution, &num_found);
-  const auto name = [&](const Candidate& c) { return database.models()[c.model].name; };
-  for (const RankedCandidate& r : ranked) {
-    const double pixels =
-        PixelsAcross(scene, database.models()[r.candidate.model], r.candidate.T_sensor_object);
-    writer->Write('R', named.name, name(r.candidate),
-                  image.T_local_sensor() * r.candidate.T_sensor_object,
-                  RankFigures(r.figures, pixels));
-  }
+  const std::vector<Correspondence> matches = MatchToModels(features, database, params, execution);
+  std::vector<Hypothesis> hypotheses =
+      ProposeHypotheses(scene, features, matches, database, all, execution, &num_found);
+  for (const Hypothesis& h : hypotheses) write('P', h);
+  if (static_cast<int>(hypotheses.size()) > params.ranking.max_refined)
+    hypotheses.resize(params.ranking.max_refined);
+  all.ranking.max_judged = params.ranking.max_refined;
+  std::vector<Hypothesis> ranked =
+      RankHypotheses(scene, std::move(hypotheses), database, all, execution);
+  for (const Hypothesis& h : ranked) write('R', h);
   if (static_cast<int>(ranked.size()) > params.ranking.max_judged)
     ranked.resize(params.ranking.max_judged);
-  for (const JudgedCandidate& j : JudgeCandidates(scene, ranked, database, params, execution)) {
-    writer->Write('J', named.name, name(j.candidate),
-                  image.T_local_sensor() * j.candidate.T_sensor_object,
-                  JudgementFigures(j.evidence, j.figures));
+  for (const JudgedCandidate& j :
+       JudgeCandidates(scene, features, matches, ranked, database, params, execution)) {
+    writer->Write('J', named.name, name(j.candidate.model),
+                  T_local_sensor * j.candidate.T_sensor_object,
+                  JudgementFigures(j.evidence, j.figures, j.support));
   }
 }
 

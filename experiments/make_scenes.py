@@ -2,18 +2,19 @@
 """Make labelled scans of random offices with rimod-simulator, as training data for the judgement.
 
 usage: make_scenes.py --furniture FOLDER --simulator rimod-simulator --out OUT [--scenes 150] [--seed 1] [--jobs 2]
-                      [--mean-visible 1.0]
+                      [--mean-visible 1.0] [--set offices|alone|tilted]
 
 FOLDER holds the .sh3f files of Debian's package sweethome3d-furniture (/usr/share/sweethome3d/furniture); the
 meshes used are cut out of them, scaled to their catalogue sizes and written to OUT/meshes. Writes
 
     OUT/models/<class>/{model.json,scan_*.pcd}    a recording of each object, for rimod-modeler --recording
-    OUT/train/logs/NNN.lcm, OUT/train/labels.json scans and what stands where, in the benchmark's format
+    OUT/SET/logs/NNN.lcm, OUT/SET/labels.json     scans and what stands where, in the benchmark's format
     OUT/scenes/*.yaml                             the scene files of all of them
 
 Scene NNN depends on the seed and its number only: more scenes leave the first ones as they are. A scene in which
 one of the objects can hardly be seen, or of whose objects more is in view than --mean-visible, is thrown away and
-drawn again, up to ATTEMPTS times.
+drawn again, up to ATTEMPTS times. The set "alone" has one object a scan, 1.5 to 13 m away in a hall with other things
+along its walls and far away; in the set "tilted" it hangs 2 to 4 m away, rolled and pitched by up to 25 degrees.
 """
 import argparse
 import concurrent.futures
@@ -29,6 +30,7 @@ import zipfile
 ATTEMPTS = 8
 LEAST_POINTS, LEAST_VISIBLE = 200, 0.3
 GAP = 0.02  # m between things
+HALL_MIN, HALL_MAX = [-4, -8, 0], [20, 8, 5]  # m
 
 
 # ---------------------------------------------------------------- shapes
@@ -579,10 +581,56 @@ def items_of(number, seed, classes):
     return items
 
 
+def hall_things(rng, furniture, target):
+    """Entries of things that stand along the walls of a hall or behind the object, none before it."""
+    hall = Office(rng, furniture, [])
+    hall.x0, hall.x1, hall.y0, hall.y1 = HALL_MIN[0], HALL_MAX[0], HALL_MIN[1], HALL_MAX[1]
+    bearing, distance = math.atan2(target.y, target.x), math.hypot(target.x, target.y)
+    entries = []
+    for _ in range(rng.randint(8, 25)):
+        shape = wall_thing(rng, furniture) if rng.random() < 0.4 else hall.any_thing()
+        if rng.random() < 0.6:
+            x, y = rng.uniform(1, HALL_MAX[0] - 0.8), rng.choice((-1, 1)) * (HALL_MAX[1] - rng.uniform(0.5, 1.5))
+        else:
+            x, y = rng.uniform(6, HALL_MAX[0] - 0.8), rng.uniform(HALL_MIN[1] + 1, HALL_MAX[1] - 1)
+        placed = Placed(shape, x, y, 0, rng.uniform(-math.pi, math.pi), reflectivity=hall.reflectivity())
+        beside = abs(math.atan2(y, x) - bearing) * math.hypot(x, y) > shape.radius + target.shape.radius + 0.3
+        behind = math.hypot(x, y) > distance + shape.radius + target.shape.radius + 0.3
+        if (beside or behind) and hall.free(placed, hall.floor):
+            hall.floor.append(placed)
+            entries.append(placed.entry())
+    return entries
+
+
+def make_hall_scan(number, out, simulator, seed, furniture, classes, tilted):
+    """One object alone in a hall; the scan's labels."""
+    name, item = f'{number:03d}', classes[number % len(classes)]
+    folder = out / ('tilted' if tilted else 'alone')
+    truth, path, log = (out / 'scenes' / f'{folder.name}_{name}.truth.json', out / 'scenes' / f'{folder.name}_{name}.yaml',
+                        folder / 'logs' / f'{name}.lcm')
+    rng = random.Random(f'{seed}/{folder.name}/{number}')
+    distance = rng.uniform(2, 4) if tilted else rng.uniform(1.5, 13)
+    bearing = rng.uniform(-0.5, 0.5)
+    tilt, lift = (0.0, 0.0), 0.0
+    if tilted:
+        angle, axis = rng.uniform(0, 25), rng.uniform(-math.pi, math.pi)
+        tilt, lift = (angle * math.cos(axis), angle * math.sin(axis)), 0.05
+    placed = Placed(item.shape, distance * math.cos(bearing), distance * math.sin(bearing), lift, rng.uniform(-math.pi, math.pi),
+                    tilt, item, item.reflectivity)
+    scene = {**SCANNER, 'seed': rng.randrange(1, 2**31), 'noise': noise(rng),
+             'sensor': {**SCANNER['sensor'], 'position': [0, 0, round(rng.uniform(1.05, 1.3), 3)]},
+             'room': {'min': HALL_MIN, 'max': HALL_MAX}, 'objects': [placed.entry()] + hall_things(rng, furniture, placed)}
+    path.write_text(json.dumps(scene, indent=1))
+    simulate(simulator, [path, '--log', log, '--truth', truth])
+    objects = json.loads(truth.read_text())['scans'][0]['objects']
+    truth.unlink()
+    return {'scan': name, 'objects': objects}
+
+
 def make_scan(number, out, simulator, seed, furniture, classes, mean_visible):
     """The scan's labels. Scenes are drawn until every object can be seen; the best of all attempts counts."""
     name, best, items = f'{number:03d}', None, items_of(number, seed, classes)
-    truth, path, log = (out / 'scenes' / f'{name}.truth.json', out / 'scenes' / f'{name}.yaml', out / 'train' / 'logs' / f'{name}.lcm')
+    truth, path, log = (out / 'scenes' / f'{name}.truth.json', out / 'scenes' / f'{name}.yaml', out / 'offices' / 'logs' / f'{name}.lcm')
     for attempt in range(ATTEMPTS):
         rng = random.Random(f'{seed}/{number}/{attempt}')
         office = Office(rng, furniture, items)
@@ -614,12 +662,13 @@ def main():
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--jobs', type=int, default=2)
     parser.add_argument('--mean-visible', type=float, default=1.0, help='smaller: more of the objects is hidden')
+    parser.add_argument('--set', default='offices', choices=('offices', 'alone', 'tilted'))
     parser.add_argument('--no-recordings', action='store_true', help='OUT has the models already')
     a = parser.parse_args()
     furniture = Furniture(a.furniture, a.out / 'meshes')
     if not furniture.models:
         sys.exit(f'{a.furniture}: no .sh3f files')
-    for folder in ('scenes', 'train/logs'):
+    for folder in ('scenes', f'{a.set}/logs'):
         (a.out / folder).mkdir(parents=True, exist_ok=True)
     classes = object_classes(furniture)
     for piece in CHAIRS + SEATS + FLOOR_THINGS + WALL_THINGS + TOP_THINGS:
@@ -627,8 +676,11 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         if not a.no_recordings:
             list(pool.map(lambda p: record(p[1], a.out, a.simulator, a.seed * 1000 + p[0]), enumerate(classes)))
-        scans = list(pool.map(lambda n: make_scan(n, a.out, a.simulator, a.seed, furniture, classes, a.mean_visible), range(a.scenes)))
-    (a.out / 'train' / 'labels.json').write_text(json.dumps({'scans': scans}, indent=0))
+        if a.set == 'offices':
+            scans = list(pool.map(lambda n: make_scan(n, a.out, a.simulator, a.seed, furniture, classes, a.mean_visible), range(a.scenes)))
+        else:
+            scans = list(pool.map(lambda n: make_hall_scan(n, a.out, a.simulator, a.seed, furniture, classes, a.set == 'tilted'), range(a.scenes)))
+    (a.out / a.set / 'labels.json').write_text(json.dumps({'scans': scans}, indent=0))
     count = {}
     for scan in scans:
         for o in scan['objects']:

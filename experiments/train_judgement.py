@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 """Learn the default method's weights from figures of labelled scans.
 
-usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv [--data ..] [--out FILE.cpp]
+usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv[@WEIGHT] [--data ..] [--out FILE.cpp]
        train_judgement.py --models MODELS_DIR --data .. --folds 5
 
 MODELS_DIR has <class>/model.json with box and symmetry, LABELS.json and model.json are in the format of
 the benchmark sets, FIGURES.csv comes from rimod-dump-figures. Writes rimod/judgement_weights.cpp: a
-logistic regression for ranking candidates (lines R) and boosted trees for judging them (lines J; needs
-scikit-learn, Debian's python3-sklearn). A candidate
-is right within 10 cm and 15 degrees of an object of its class (modulo its symmetry) and wrong when its
-centre is farther than max(0.15 m, 0.25 diameters) from all of them; those in between are left out. With
+logistic regression for hypotheses as they are proposed (lines P) and another for the refined ones (lines R), in
+which each object counts the same, and boosted trees for judging candidates (lines J; they need scikit-learn,
+Debian's python3-sklearn). A candidate
+is right within 10 cm and 15 degrees of an object of its class (modulo its symmetry), a proposal within 20 cm and
+25 degrees; it is wrong when its centre is farther than max(0.15 m, 0.25 diameters) from all of them; those in
+between are left out. The trees' probability is calibrated on what held-out scans of the sets without @WEIGHT would
+have as detections. With
 --folds the scans are split and the log loss and the average precision over the held-out candidates are printed,
 nothing is written.
 """
@@ -21,7 +24,8 @@ import sys
 import numpy as np
 
 SYMMETRY = {'none': 1, 'yaw2': 2, 'yaw4': 4, 'yaw_continuous': 0}
-POSITION_ERROR, ANGLE_ERROR = 0.10, math.radians(15)
+OBJECT_WEIGHT = 6.0  # of an object's right candidates together, against 1 of a wrong one
+RIGHT = {'P': (0.20, math.radians(25)), 'R': (0.10, math.radians(15)), 'J': (0.10, math.radians(15))}
 
 
 def rotations(q):
@@ -65,11 +69,11 @@ def read_figures(path):
     return result
 
 
-def label(labels, scans, names, poses, models):
-    """1 right, 0 wrong, -1 in between, for each candidate."""
+def label(labels, scans, names, poses, models, kind='J'):
+    """1 right, 0 wrong, -1 in between, for each candidate; and a weight: all right ones of an object weigh the same."""
     objects = {s['scan']: s['objects'] for s in labels['scans']}
     R = rotations(poses[:, 3:])
-    y = np.zeros(len(scans), int)
+    y, weight = np.zeros(len(scans), int), np.ones(len(scans))
     groups = {}
     for i, key in enumerate(zip(scans, names)):
         groups.setdefault(key, []).append(i)
@@ -82,44 +86,56 @@ def label(labels, scans, names, poses, models):
             target = rotations(np.array([o['pose'][3:]], float))[0]
             distance = np.linalg.norm(centres - (target @ m.centre + o['pose'][:3]), axis=1)
             angle = angle_errors(R[index], target, m.symmetry)
-            good = (distance < POSITION_ERROR) & (angle < ANGLE_ERROR)
-            near = distance < max(0.15, 0.25 * m.diameter)
+            good = (distance < RIGHT[kind][0]) & (angle < RIGHT[kind][1])
+            near = distance < max(0.15, RIGHT[kind][0], 0.25 * m.diameter)
+            weight[np.array(index)[good]] = OBJECT_WEIGHT / max(good.sum(), 1)
             for k, i in enumerate(index):
                 y[i] = 1 if good[k] else (-1 if near[k] and y[i] == 0 else y[i])
-    return y
+    return y, weight
 
 
-def fit(X, y, ridge=1.0):
+def fit(X, y, weight, ridge=1.0):
+    """Logistic regression: means, scales, weights, bias."""
     mean, scale = X.mean(0), X.std(0) + 1e-6
     Z = np.hstack([(X - mean) / scale, np.ones((len(X), 1))])
     penalty = ridge * np.r_[np.ones(X.shape[1]), 0]
     b = np.zeros(Z.shape[1])
     for _ in range(40):
         p = 1 / (1 + np.exp(-np.clip(Z @ b, -40, 40)))
-        w = np.maximum(p * (1 - p), 1e-9)
-        step = np.linalg.solve((Z * w[:, None]).T @ Z + np.diag(penalty + 1e-9), Z.T @ (p - y) + penalty * b)
+        w = np.maximum(weight * p * (1 - p), 1e-9)
+        step = np.linalg.solve((Z * w[:, None]).T @ Z + np.diag(penalty + 1e-9), Z.T @ (weight * (p - y)) + penalty * b)
         b -= step
         if np.abs(step).max() < 1e-8:
             break
     return mean, scale, b[:-1], b[-1]
 
 
-def predict(model, X):
-    mean, scale, w, bias = model
-    return 1 / (1 + np.exp(-np.clip(((X - mean) / scale) @ w + bias, -40, 40)))
+class Logistic:
+    def __init__(self, X, y, weight, ridge=1.0):
+        self.mean, self.scale, self.weights, self.bias = fit(X, y, weight, ridge)
+
+    def predict(self, X):
+        return 1 / (1 + np.exp(-np.clip(((X - self.mean) / self.scale) @ self.weights + self.bias, -40, 40)))
 
 
 class Trees:
     """Gradient boosting for the judgement; the settings keep the leaves well filled."""
 
-    def __init__(self, X, y):
+    def __init__(self, X, y, weight):
         from sklearn.ensemble import HistGradientBoostingClassifier
         self.fitted = HistGradientBoostingClassifier(
             max_iter=200, learning_rate=0.05, max_leaf_nodes=10, l2_regularization=3.0,
-            min_samples_leaf=20, early_stopping=False, random_state=0).fit(X, y)
+            min_samples_leaf=20, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
+        self.slope, self.shift = 1.0, 0.0  # of the logit, after calibration
 
     def predict(self, X):
-        return self.fitted.predict_proba(X)[:, 1]
+        return 1 / (1 + np.exp(-(self.slope * self.fitted.decision_function(X) + self.shift)))
+
+    def calibrate(self, p, right):
+        """Platt's scaling: makes probabilities p held out mean what they say."""
+        logit = np.log(np.clip(p, 1e-6, 1 - 1e-6) / np.clip(1 - p, 1e-6, 1 - 1e-6))
+        mean, scale, w, bias = fit(logit[:, None], right.astype(float), np.ones(len(p)), 0.01)
+        self.slope, self.shift = float(w[0] / scale[0]), float(bias - w[0] * mean[0] / scale[0])
 
     def nodes(self):
         """bias, roots, nodes (feature, threshold, left, right, value)"""
@@ -129,11 +145,11 @@ class Trees:
             roots.append(first)
             for n in predictors[0].nodes:
                 if n['is_leaf']:
-                    nodes.append((-1, 0.0, 0, 0, float(n['value'])))
+                    nodes.append((-1, 0.0, 0, 0, self.slope * float(n['value'])))
                 else:
                     nodes.append((int(n['feature_idx']), float(n['num_threshold']),
                                   first + int(n['left']), first + int(n['right']), 0.0))
-        return float(np.ravel(self.fitted._baseline_prediction)[0]), roots, nodes
+        return self.slope * float(np.ravel(self.fitted._baseline_prediction)[0]) + self.shift, roots, nodes
 
 
 def average_precision(y, p):
@@ -142,21 +158,52 @@ def average_precision(y, p):
     return float((precision * y).sum() / max(y.sum(), 1))
 
 
-def write(path, rank, trees):
+def write(path, learnt):
     def array(v):
         return '{' + ', '.join(f'{x:.9g}' for x in v) + '}'
-    mean, scale, w, rank_bias = rank
-    bias, roots, nodes = trees.nodes()
+
+    def trees(name, fitted):
+        bias, roots, nodes = fitted.nodes()
+        lines = [f'const BoostedTrees {name} = {{', f'    {bias:.9g},', f'    {array(roots)},', '    {']
+        for k in range(0, len(nodes), 4):
+            lines.append('     ' + ' '.join('{%d, %.9g, %d, %d, %.9g},' % n for n in nodes[k:k + 4]))
+        return lines + ['    }};', '']
+    def logistic(name, fitted):
+        return [f'const LogisticWeights {name} = {{', f'    {array(fitted.mean)},', f'    {array(fitted.scale)},',
+                f'    {array(fitted.weights)},', f'    {fitted.bias:.9g}}};', '']
     lines = ['#include "rimod/judgement.h"', '',
              '// Written by experiments/train_judgement.py; docs/accuracy.md tells on what.', '',
-             '// clang-format off', 'namespace rimod {', '',
-             'const LogisticWeights kRankWeights = {', f'    {array(mean)},', f'    {array(scale)},',
-             f'    {array(w)},', f'    {rank_bias:.9g}}};', '',
-             'const BoostedTrees kJudgementTrees = {', f'    {bias:.9g},', f'    {array(roots)},', '    {']
-    for k in range(0, len(nodes), 4):
-        lines.append('     ' + ' '.join('{%d, %.9g, %d, %d, %.9g},' % n for n in nodes[k:k + 4]))
-    lines += ['    }};', '', '}  // namespace rimod', '']
-    open(path, 'w').write('\n'.join(lines))
+             '// clang-format off', 'namespace rimod {', '']
+    lines += logistic('kProposalWeights', learnt['P']) + logistic('kRankWeights', learnt['R'])
+    lines += trees('kJudgementTrees', learnt['J'])
+    open(path, 'w').write('\n'.join(lines + ['}  // namespace rimod', '']))
+
+
+def held_out(learn, X, y, weight, groups, folds):
+    """Each candidate's probability after learning from the other folds."""
+    ids = {g: i % folds for i, g in enumerate(sorted(set(groups)))}
+    fold = np.array([ids[g] for g in groups])
+    p = np.zeros(len(y))
+    for k in range(folds):
+        train = (y >= 0) & (fold != k)
+        p[fold == k] = learn(X[train], y[train], weight[train]).predict(X[fold == k])
+    return p
+
+
+def chosen(p, groups, names, centres, models, least=0.02):
+    """The candidates that become detections: best first, none too near to a better one of its scan."""
+    result, kept = [], {}
+    for i in np.argsort(-p, kind='stable'):
+        if p[i] < least:
+            break
+        diameter = models[names[i]].diameter
+        near = any(np.linalg.norm(centres[i] - centres[k]) <
+                   (0.4 if names[i] == names[k] else 0.3) * min(diameter, models[names[k]].diameter)
+                   for k in kept.get(groups[i], []))
+        if not near:
+            kept.setdefault(groups[i], []).append(i)
+            result.append(i)
+    return np.array(result)
 
 
 def main():
@@ -169,35 +216,35 @@ def main():
     a = parser.parse_args()
     import pathlib
     models = {p.parent.name: Model(p) for folder in a.models for p in pathlib.Path(folder).glob('*/model.json')}
-    data = {'R': [], 'J': []}
+    data = {kind: [] for kind in RIGHT}
     for n, pair in enumerate(a.data):
         labels_path, csv_path = pair.split('=')
+        csv_path, _, set_weight = csv_path.partition('@')
         labels = json.load(open(labels_path))
         for kind, (scans, names, poses, figures) in read_figures(csv_path).items():
-            y = label(labels, scans, names, poses, models)
-            data[kind].append((figures, y, np.array([f'{n}/{s}' for s in scans])))
+            y, weight = label(labels, scans, names, poses, models, kind)
+            centres = poses[:, :3] + np.einsum('nij,nj->ni', rotations(poses[:, 3:]), np.array([models[n].centre for n in names]))
+            groups = np.array([f'{n}/{s}' for s in scans])
+            data[kind].append((figures, y, weight * float(set_weight or 1), groups, np.array(names), centres,
+                               np.full(len(y), not set_weight)))
     learnt = {}
     for kind, parts in data.items():
-        X = np.vstack([p[0] for p in parts])
-        y = np.concatenate([p[1] for p in parts])
-        scans = np.concatenate([p[2] for p in parts])
-        known = y >= 0
+        X, y, weight, groups, names, centres, own = (np.concatenate([part[i] for part in parts]) for i in range(7))
         print(f'{kind}: {len(y)} candidates, {(y == 1).sum()} right, {(y == 0).sum()} wrong', file=sys.stderr)
+        known = y >= 0
+        learn = Trees if kind == 'J' else lambda X, y, w: Logistic(X, y, w, a.ridge)
         if a.folds:
-            ids = {s: i % a.folds for i, s in enumerate(sorted(set(scans)))}
-            fold = np.array([ids[s] for s in scans])
-            p = np.zeros(len(y))
-            for k in range(a.folds):
-                X_train, y_train = X[known & (fold != k)], y[known & (fold != k)]
-                p[fold == k] = (predict(fit(X_train, y_train, a.ridge), X[fold == k]) if kind == 'R'
-                                else Trees(X_train, y_train).predict(X[fold == k]))
-            q = np.clip(p[known], 1e-6, 1 - 1e-6)
+            q = np.clip(held_out(learn, X, y, weight, groups, a.folds)[known], 1e-6, 1 - 1e-6)
             loss = -np.mean(y[known] * np.log(q) + (1 - y[known]) * np.log(1 - q))
-            print(f'{kind}: held out: log loss {loss:.5f}, average precision {average_precision(y[known], p[known]):.4f}')
-        else:
-            learnt[kind] = fit(X[known], y[known], a.ridge) if kind == 'R' else Trees(X[known], y[known])
+            print(f'{kind}: held out: log loss {loss:.5f}, average precision {average_precision(y[known], q):.4f}')
+            continue
+        learnt[kind] = learn(X[known], y[known], weight[known])
+        if kind == 'J':
+            p = held_out(learn, X, y, weight, groups, 5)
+            detections = chosen(np.where(own, p, 0.0), groups, names, centres, models)
+            learnt[kind].calibrate(p[detections], y[detections] != 0)
     if not a.folds:
-        write(a.out, learnt['R'], learnt['J'])
+        write(a.out, learnt)
 
 
 if __name__ == '__main__':

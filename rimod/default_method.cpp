@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
+#include <unordered_map>
 
 #include "rimod/judgement.h"
 #include "rimod/matching.h"
@@ -15,13 +17,6 @@ namespace {
 // Rounds that parallel loops over very many small pieces are cut into.
 constexpr std::size_t kBatches = 64;
 
-struct Hypothesis {
-  int model = 0;
-  Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
-  double score = 0.0;
-  RankingFigures figures;
-};
-
 // Indices by falling score, ties by index.
 template <typename List>
 std::vector<int> OrderByScore(const List& list) {
@@ -30,15 +25,6 @@ std::vector<int> OrderByScore(const List& list) {
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return list[a].score > list[b].score; });
   return order;
-}
-
-std::vector<Correspondence> Match(const FeatureSet& features, const ModelDatabase& database,
-                                  const PipelineParams& params, const Execution& execution) {
-  const StageScope stage(execution, "matching");
-  std::vector<Feature> projected(features.features.size());
-  for (std::size_t i = 0; i < projected.size(); ++i)
-    projected[i].descriptor = database.projection().Project(features.features[i].descriptor);
-  return MatchFeatures(projected, database.projected_descriptors(), params.matching, execution);
 }
 
 std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondence>& matches,
@@ -55,64 +41,149 @@ std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondenc
     const Eigen::Vector3d line_of_sight =
         model_feature.position.cast<double>() -
         database.models()[origin.model].views[origin.view].viewpoint;
-    const std::optional<Eigen::Isometry3d> pose = PoseFromCorrespondence(
-        features.features[match.scene_feature], model_feature, line_of_sight,
-        params.range_patch.max_vertical_cosine, params.ranking.min_normal_cosine);
-    if (pose) hypotheses.push_back({origin.model, pose->cast<float>(), 0.0, {}});
+    const Feature& scene_feature = features.features[match.scene_feature];
+    const std::optional<Eigen::Isometry3d> upright = PoseFromCorrespondence(
+        scene_feature, model_feature, line_of_sight, params.range_patch.max_vertical_cosine,
+        params.ranking.min_normal_cosine);
+    if (!upright) continue;
+    const auto add = [&](const Eigen::Isometry3d& pose) {
+      Hypothesis hypothesis;
+      hypothesis.model = origin.model;
+      hypothesis.T_sensor_object = pose.cast<float>();
+      hypothesis.figures.descriptor_distance = static_cast<float>(match.distance);
+      hypotheses.push_back(hypothesis);
+    };
+    add(*upright);
+    const std::optional<Eigen::Isometry3d> tilted = TiltedToNormal(
+        *upright, scene_feature, model_feature, params.ranking.min_tilt, params.ranking.max_tilt);
+    if (tilted) add(*tilted);
   }
   return hypotheses;
 }
 
+// Sets the figures of a hypothesis at its pose; false when it is hopeless.
+bool SetFigures(const Scene& scene, const ModelDatabase& database, double epsilon,
+                const RankingParams& params, Hypothesis* hypothesis) {
+  RankingFigures& figures = hypothesis->figures;
+  const Eigen::Isometry3f& pose = hypothesis->T_sensor_object;
+  figures.tilt = std::acos(std::clamp(pose.linear()(2, 2), -1.0f, 1.0f));
+  figures.pixels_across = static_cast<float>(
+      PixelsAcross(scene, database.models()[hypothesis->model], pose.cast<double>()));
+  return CompareViewPoints(scene, database.ranking_models()[hypothesis->model], pose, epsilon,
+                           params, &figures);
+}
+
 // Scores all hypotheses before refinement, each on its own.
-void ScoreHypotheses(const Scene& scene, const ModelDatabase& database,
-                     const PipelineParams& params, const Execution& execution,
-                     std::vector<Hypothesis>* hypotheses) {
-  const StageScope stage(execution, "scoring");
+void ScoreHypotheses(const Scene& scene, const ModelDatabase& database, const RankingParams& params,
+                     const Execution& execution, std::vector<Hypothesis>* hypotheses) {
   execution.parallel_for(kBatches, [&](std::size_t batch) {
     for (std::size_t i = batch; i < hypotheses->size(); i += kBatches) {
       Hypothesis& hypothesis = (*hypotheses)[i];
-      const double score =
-          RankingScore(scene, database.ranking_models()[hypothesis.model],
-                       hypothesis.T_sensor_object, params.ranking.coarse_epsilon, params.ranking);
-      const double pixels = PixelsAcross(scene, database.models()[hypothesis.model],
-                                         hypothesis.T_sensor_object.cast<double>());
-      hypothesis.score =
-          std::max(score, 0.0) / (1.0 + params.ranking.pixels_half / (pixels * pixels));
+      if (SetFigures(scene, database, params.coarse_epsilon, params, &hypothesis))
+        hypothesis.score = Probability(kProposalWeights, RankFigures(hypothesis.figures));
     }
   });
 }
 
-// Best first the hypotheses whose pose differs from all better ones of their model.
+// Hypotheses that were kept, found again by model and place.
+class KeptPoses {
+ public:
+  KeptPoses(double same_distance, double same_angle)
+      : distance_(static_cast<float>(same_distance)),
+        min_trace_(1.0f + 2.0f * static_cast<float>(std::cos(same_angle))) {}
+
+  // Index of a kept one of the same pose, -1: there is none.
+  int Find(const Hypothesis& hypothesis, const Eigen::Vector3f& centre) const {
+    // Cells are two distances wide: a ball reaches into eight of them at most.
+    const Eigen::Vector3i low = CellOf(centre.array() - distance_);
+    const Eigen::Vector3i high = CellOf(centre.array() + distance_);
+    int found = -1;
+    for (int x = low.x(); x <= high.x(); ++x) {
+      for (int y = low.y(); y <= high.y(); ++y) {
+        for (int z = low.z(); z <= high.z(); ++z) {
+          const auto cell = cells_.find(Key(hypothesis.model, {x, y, z}));
+          if (cell == cells_.end()) continue;
+          for (const int k : cell->second)
+            if ((found < 0 || k < found) && Same(poses_[k], {hypothesis.T_sensor_object, centre}))
+              found = k;
+        }
+      }
+    }
+    return found;
+  }
+
+  void Add(const Hypothesis& hypothesis, const Eigen::Vector3f& centre) {
+    cells_[Key(hypothesis.model, CellOf(centre))].push_back(static_cast<int>(poses_.size()));
+    poses_.push_back({hypothesis.T_sensor_object, centre});
+  }
+
+ private:
+  struct Pose {
+    Eigen::Isometry3f T_sensor_object;
+    Eigen::Vector3f centre;
+  };
+
+  bool Same(const Pose& a, const Pose& b) const {
+    return (a.centre - b.centre).squaredNorm() < distance_ * distance_ &&
+           a.T_sensor_object.linear().cwiseProduct(b.T_sensor_object.linear()).sum() > min_trace_;
+  }
+  Eigen::Vector3i CellOf(const Eigen::Vector3f& p) const {
+    constexpr float kFar = 1e6f;  // cells; keeps the conversion defined
+    return (p / (2.0f * distance_)).array().floor().max(-kFar).min(kFar).cast<int>();
+  }
+  static std::uint64_t Key(int model, const Eigen::Vector3i& cell) {
+    std::uint64_t key = static_cast<std::uint64_t>(model);
+    for (int d = 0; d < 3; ++d)
+      key = key * 0x9E3779B97F4A7C15u + static_cast<std::uint32_t>(cell[d]);
+    return key;
+  }
+
+  float distance_, min_trace_;
+  std::vector<Pose> poses_;
+  std::unordered_map<std::uint64_t, std::vector<int>> cells_;
+};
+
+// Best first the hypotheses whose pose differs from all better ones of their model; the others give
+// these their votes. Looks at the max_scanned best.
 std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses,
-                                       const ModelDatabase& database, int max_count,
+                                       const ModelDatabase& database, int max_scanned,
                                        const RankingParams& params) {
-  const float distance_sq = static_cast<float>(params.same_distance * params.same_distance);
-  const float min_trace = 1.0f + 2.0f * static_cast<float>(std::cos(params.same_angle));
-  std::vector<Hypothesis> kept;
-  std::vector<Eigen::Vector3f> centres;
+  std::vector<Hypothesis> different;
+  KeptPoses kept(params.same_distance, params.same_angle);
+  int scanned = 0;
   for (const int i : OrderByScore(hypotheses)) {
     const Hypothesis& hypothesis = hypotheses[i];
-    if (hypothesis.score <= 0.0 || static_cast<int>(kept.size()) >= max_count) break;
+    if (hypothesis.score <= 0.0 || scanned++ >= max_scanned) break;
     const Eigen::Vector3f centre =
         hypothesis.T_sensor_object * database.ranking_models()[hypothesis.model].centre;
-    bool is_new = true;
-    for (std::size_t k = 0; k < kept.size() && is_new; ++k) {
-      is_new =
-          kept[k].model != hypothesis.model || (centres[k] - centre).squaredNorm() >= distance_sq ||
-          kept[k].T_sensor_object.linear().cwiseProduct(hypothesis.T_sensor_object.linear()).sum() <
-              min_trace;
+    if (!centre.allFinite()) continue;
+    const int same = kept.Find(hypothesis, centre);
+    if (same >= 0) {
+      different[same].figures.votes += hypothesis.figures.votes;
+      continue;
     }
-    if (!is_new) continue;
-    kept.push_back(hypothesis);
-    centres.push_back(centre);
+    kept.Add(hypothesis, centre);
+    different.push_back(hypothesis);
   }
-  return kept;
+  return different;
 }
 
-// Upright ICP with the nearest view's points, then the score that was learnt.
+// The count best, best first, scored with their votes.
+std::vector<Hypothesis> BestWithVotes(std::vector<Hypothesis> hypotheses,
+                                      const LogisticWeights& weights, int count) {
+  for (Hypothesis& hypothesis : hypotheses)
+    hypothesis.score = Probability(weights, RankFigures(hypothesis.figures));
+  std::vector<Hypothesis> best;
+  for (const int i : OrderByScore(hypotheses)) {
+    if (static_cast<int>(best.size()) >= count) break;
+    best.push_back(hypotheses[i]);
+  }
+  return best;
+}
+
+// ICP with the nearest view's points, then the score that was learnt.
 void RefineAndRank(const Scene& scene, const ModelDatabase& database, const PipelineParams& params,
                    const Execution& execution, std::vector<Hypothesis>* hypotheses) {
-  const StageScope stage(execution, "refinement");
   const RefinementParams& refinement = params.refinement;
   execution.parallel_for(hypotheses->size(), [&](std::size_t i) {
     Hypothesis& hypothesis = (*hypotheses)[i];
@@ -121,18 +192,52 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
     hypothesis.score = 0.0;
     if (view < 0) return;
     hypothesis.T_sensor_object =
-        RefinePose(scene, model.views[view].surface, hypothesis.T_sensor_object, Freedom::kUpright,
+        RefinePose(scene, model.views[view].surface, hypothesis.T_sensor_object, Freedom::kAll,
                    refinement.coarse_iterations, refinement.coarse_gate, refinement.fine_gate,
                    refinement.damping, refinement.tilt_damping);
-    const std::optional<RankingFigures> figures = CompareViewPoints(
-        scene, model, hypothesis.T_sensor_object, params.ranking.fine_epsilon, params.ranking);
-    if (!figures) return;
-    hypothesis.figures = *figures;
-    hypothesis.score =
-        Probability(kRankWeights,
-                    RankFigures(*figures, PixelsAcross(scene, database.models()[hypothesis.model],
-                                                       hypothesis.T_sensor_object.cast<double>())));
+    if (SetFigures(scene, database, params.ranking.fine_epsilon, params.ranking, &hypothesis))
+      hypothesis.score = Probability(kRankWeights, RankFigures(hypothesis.figures));
   });
+}
+
+// Where each feature's matches begin, and the end of the last one's.
+std::vector<std::size_t> FirstMatches(const FeatureSet& features,
+                                      const std::vector<Correspondence>& matches) {
+  std::vector<std::size_t> first(features.features.size() + 1, matches.size());
+  for (std::size_t i = matches.size(); i-- > 0;) first[matches[i].scene_feature] = i;
+  for (std::size_t i = features.features.size(); i-- > 0;)
+    first[i] = std::min(first[i], first[i + 1]);
+  return first;
+}
+
+FeatureSupport Support(const FeatureSet& features, const std::vector<Correspondence>& matches,
+                       const std::vector<std::size_t>& first_matches, const ModelDatabase& database,
+                       const Candidate& candidate) {
+  constexpr float kSamePlace = 0.06f, kSameNormal = 0.8f;  // m, cosine
+  const ObjectModel& model = database.models()[candidate.model];
+  const Eigen::Isometry3f T_object_sensor = candidate.T_sensor_object.inverse().cast<float>();
+  const Eigen::Array3f low = model.box_min.cast<float>().array() - 0.5f * kSamePlace;
+  const Eigen::Array3f high = model.box_max.cast<float>().array() + 0.5f * kSamePlace;
+  const auto supports = [&](const Correspondence& match, const Eigen::Vector3f& position,
+                            const Eigen::Vector3f& normal) {
+    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
+    if (origin.model != candidate.model) return false;
+    const Feature& model_feature = *database.features(origin.model)[origin.feature];
+    return (model_feature.position - position).squaredNorm() < kSamePlace * kSamePlace &&
+           model_feature.normal.dot(normal) > kSameNormal;
+  };
+  FeatureSupport support;
+  for (std::size_t i = 0; i < features.features.size(); ++i) {
+    const Eigen::Vector3f position = T_object_sensor * features.features[i].position;
+    if ((position.array() < low).any() || (position.array() > high).any()) continue;
+    ++support.inside;
+    const Eigen::Vector3f normal = T_object_sensor.linear() * features.features[i].normal;
+    support.matching +=
+        std::any_of(matches.begin() + static_cast<std::ptrdiff_t>(first_matches[i]),
+                    matches.begin() + static_cast<std::ptrdiff_t>(first_matches[i + 1]),
+                    [&](const Correspondence& match) { return supports(match, position, normal); });
+  }
+  return support;
 }
 
 // The share of a candidate's pixels that are explained already.
@@ -145,48 +250,66 @@ double ExplainedShare(const Evidence& evidence, const std::vector<char>& explain
 
 }  // namespace
 
-std::vector<RankedCandidate> RankCandidates(const Scene& scene, const FeatureSet& features,
-                                            const ModelDatabase& database,
-                                            const PipelineParams& params,
-                                            const Execution& execution, int* num_found) {
-  std::vector<Hypothesis> hypotheses = PosesFromCorrespondences(
-      Match(features, database, params, execution), features, database, params, execution);
-  *num_found = static_cast<int>(hypotheses.size());
-  ScoreHypotheses(scene, database, params, execution, &hypotheses);
-  hypotheses = DifferentPoses(hypotheses, database, params.ranking.max_refined, params.ranking);
-  RefineAndRank(scene, database, params, execution, &hypotheses);
-  hypotheses = DifferentPoses(hypotheses, database, params.ranking.max_judged, params.ranking);
-  std::vector<RankedCandidate> ranked;
-  for (const Hypothesis& hypothesis : hypotheses) {
-    ranked.push_back(
-        {{hypothesis.model, hypothesis.T_sensor_object.cast<double>(), hypothesis.score},
-         hypothesis.figures});
-  }
-  return ranked;
+std::vector<Correspondence> MatchToModels(const FeatureSet& features, const ModelDatabase& database,
+                                          const PipelineParams& params,
+                                          const Execution& execution) {
+  const StageScope stage(execution, "matching");
+  std::vector<Feature> projected(features.features.size());
+  for (std::size_t i = 0; i < projected.size(); ++i)
+    projected[i].descriptor = database.projection().Project(features.features[i].descriptor);
+  return MatchFeatures(projected, database.projected_descriptors(), params.matching, execution);
 }
 
-std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene,
-                                             const std::vector<RankedCandidate>& ranked,
+std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& features,
+                                          const std::vector<Correspondence>& matches,
+                                          const ModelDatabase& database,
+                                          const PipelineParams& params, const Execution& execution,
+                                          int* num_found) {
+  std::vector<Hypothesis> hypotheses =
+      PosesFromCorrespondences(matches, features, database, params, execution);
+  *num_found = static_cast<int>(hypotheses.size());
+  const StageScope stage(execution, "scoring");
+  const RankingParams& ranking = params.ranking;
+  ScoreHypotheses(scene, database, ranking, execution, &hypotheses);
+  return BestWithVotes(DifferentPoses(hypotheses, database, ranking.max_scanned, ranking),
+                       kProposalWeights, ranking.max_refined);
+}
+
+std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
+                                       const ModelDatabase& database, const PipelineParams& params,
+                                       const Execution& execution) {
+  const StageScope stage(execution, "refinement");
+  const RankingParams& ranking = params.ranking;
+  RefineAndRank(scene, database, params, execution, &hypotheses);
+  return BestWithVotes(DifferentPoses(hypotheses, database, ranking.max_refined, ranking),
+                       kRankWeights, ranking.max_judged);
+}
+
+std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
+                                             const std::vector<Correspondence>& matches,
+                                             const std::vector<Hypothesis>& ranked,
                                              const ModelDatabase& database,
                                              const PipelineParams& params,
                                              const Execution& execution) {
   const StageScope stage(execution, "validation");
   const RefinementParams& refinement = params.refinement;
+  const std::vector<std::size_t> first_matches = FirstMatches(features, matches);
   std::vector<JudgedCandidate> judged(ranked.size());
   execution.parallel_for(ranked.size(), [&](std::size_t i) {
     JudgedCandidate& result = judged[i];
-    result.candidate = ranked[i].candidate;
+    result.candidate.model = ranked[i].model;
     result.figures = ranked[i].figures;
     const JudgedModel& model = database.judged_models()[result.candidate.model];
     result.candidate.T_sensor_object =
-        RefinePose(scene, model.sample(), result.candidate.T_sensor_object.cast<float>(),
-                   Freedom::kAll, refinement.fine_iterations, refinement.judged_first_gate,
+        RefinePose(scene, model.sample(), ranked[i].T_sensor_object, Freedom::kAll,
+                   refinement.fine_iterations, refinement.judged_first_gate,
                    refinement.judged_last_gate, refinement.damping, refinement.tilt_damping)
             .cast<double>();
     result.evidence =
         GatherEvidence(scene, model, result.candidate.T_sensor_object, params.evidence);
-    result.candidate.score =
-        Probability(kJudgementTrees, JudgementFigures(result.evidence, result.figures));
+    result.support = Support(features, matches, first_matches, database, result.candidate);
+    result.candidate.score = Probability(
+        kJudgementTrees, JudgementFigures(result.evidence, result.figures, result.support));
   });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const JudgedCandidate& a, const JudgedCandidate& b) {
@@ -233,10 +356,13 @@ StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& featu
     return Scene(image, params.evidence.normal_radius, execution);
   }();
   StagedCandidates found;
-  const std::vector<RankedCandidate> ranked =
-      RankCandidates(scene, features, database, params, execution, &found.num_found);
+  const std::vector<Correspondence> matches = MatchToModels(features, database, params, execution);
+  const std::vector<Hypothesis> ranked = RankHypotheses(
+      scene,
+      ProposeHypotheses(scene, features, matches, database, params, execution, &found.num_found),
+      database, params, execution);
   const std::vector<JudgedCandidate> judged =
-      JudgeCandidates(scene, ranked, database, params, execution);
+      JudgeCandidates(scene, features, matches, ranked, database, params, execution);
   found.validated = ChooseCandidates(scene, judged, database, params, execution);
   for (const JudgedCandidate& candidate : judged) found.scored.push_back(candidate.candidate);
   return found;

@@ -21,27 +21,44 @@ StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& featu
 
 // Its steps, also for training the judgement.
 
+// Each feature's correspondences. Stage matching.
+std::vector<Correspondence> MatchToModels(const FeatureSet& features, const ModelDatabase& database,
+                                          const PipelineParams& params, const Execution& execution);
+
+struct Hypothesis {
+  int model = 0;  // in the database
+  Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
+  double score = 0.0;
+  RankingFigures figures;
+};
+
+// A pose or two from every correspondence, scored as they are, without hopeless ones: the
+// max_refined best of different poses, best first. num_found: before any was left out. Stages
+// hypotheses, scoring.
+std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& features,
+                                          const std::vector<Correspondence>& matches,
+                                          const ModelDatabase& database,
+                                          const PipelineParams& params, const Execution& execution,
+                                          int* num_found);
+
+// Hypotheses refined and ranked by what the views' points say then: the max_judged best of
+// different poses, best first. Stage refinement.
+std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
+                                       const ModelDatabase& database, const PipelineParams& params,
+                                       const Execution& execution);
+
 // Everything that judging a candidate found.
 struct JudgedCandidate {
   Candidate candidate;  // score: probability that it is right
   RankingFigures figures;
+  FeatureSupport support;
   Evidence evidence;
 };
 
-// Candidates refined by the views' points, best first by rank, thinned to different poses; the
-// first max_judged of them. Stages matching, hypotheses, scoring, refinement.
-struct RankedCandidate {
-  Candidate candidate;  // score: of the ranking
-  RankingFigures figures;
-};
-std::vector<RankedCandidate> RankCandidates(const Scene& scene, const FeatureSet& features,
-                                            const ModelDatabase& database,
-                                            const PipelineParams& params,
-                                            const Execution& execution, int* num_found);
-
 // The ranked candidates refined in all degrees of freedom and judged, best first. Stage validation.
-std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene,
-                                             const std::vector<RankedCandidate>& ranked,
+std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
+                                             const std::vector<Correspondence>& matches,
+                                             const std::vector<Hypothesis>& ranked,
                                              const ModelDatabase& database,
                                              const PipelineParams& params,
                                              const Execution& execution);

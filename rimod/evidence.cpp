@@ -43,9 +43,10 @@ ObjectModel Thin(const ObjectModel& model, double spacing) {
 struct Counts {
   int rendered = 0, matched = 0, nearly = 0, through = 0, occluded = 0, no_return = 0;
   int jump = 0, goes_on = 0, hidden = 0, silhouette = 0;
-  int strict = 0, slightly_front = 0, slightly_behind = 0;
+  int strict = 0, close = 0, turned = 0, slightly_front = 0, slightly_behind = 0;
   std::array<int, 4> side_jump{}, side_goes_on{};  // right, left, below, above
   double residual = 0.0, signed_residual = 0.0, cosine = 0.0;
+  double difference = 0.0, difference_sq = 0.0;
   int cosines = 0;
   Eigen::Matrix3f normal_products = Eigen::Matrix3f::Zero();
 };
@@ -130,11 +131,18 @@ class Comparison {
       counts_.residual += std::abs(behind) / tolerance;
       counts_.signed_residual += behind / tolerance;
       if (std::abs(behind) < 0.5f * tolerance) ++counts_.strict;
+      if (std::abs(behind) < 0.25f * tolerance) ++counts_.close;
+      const float off_surface = behind * cosine;
+      counts_.difference += off_surface;
+      counts_.difference_sq += off_surface * off_surface;
       explained_.push_back(pixel);
       const Eigen::Vector3f& scene_normal = scene_.normal(pixel);
       if (scene_normal.squaredNorm() > 0.0f) {
-        counts_.cosine += scene_normal.dot(normal);
+        constexpr float kTurned = 0.7071f;  // cosine of 45 degrees
+        const float alike = scene_normal.dot(normal);
+        counts_.cosine += alike;
         ++counts_.cosines;
+        if (alike < kTurned) ++counts_.turned;
       }
       counts_.normal_products += normal * normal.transpose();
       CompareSilhouette(row, column, range);
@@ -270,6 +278,11 @@ class Comparison {
     v[kRelief] = Relief();
     v[kStrictlyMatched] = counts_.strict / n;
     v[kBias] = Share(counts_.signed_residual, counts_.matched);
+    v[kClosely] = Share(counts_.close, counts_.matched);
+    const double mean = Share(counts_.difference, counts_.matched);
+    v[kSpread] =
+        std::sqrt(std::max(Share(counts_.difference_sq, counts_.matched) - mean * mean, 0.0));
+    v[kTurnedNormals] = Share(counts_.turned, counts_.cosines);
     v[kSlightlyInFront] = counts_.slightly_front / n;
     v[kSlightlyBehind] = counts_.slightly_behind / n;
     v[kWorstSide] = 1.0;

@@ -56,6 +56,9 @@ enum EvidenceIndex {
   kSlightlyBehind,   // share where the scene is farther by little
   kWorstSide,        // least jump / (jump + continue) of the silhouette's four sides
   kKnownSides,       // sides of which that is known, share
+  kClosely,          // share of matched pixels whose depth differs by less than a quarter tolerance
+  kSpread,           // standard deviation of the signed difference of matched pixels, m
+  kTurnedNormals,    // share of matched pixels with normals more than 45 degrees apart
   kEvidenceCount
 };
 

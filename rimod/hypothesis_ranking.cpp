@@ -16,13 +16,13 @@ void Count(const Scene& scene, const Eigen::Vector3f& p, const Eigen::Vector3f& 
   if (range == 0.0f) return;
   const float behind = range - p.norm();
   if (behind < -epsilon) return;  // occluded
-  figures->known += 1.0;
+  figures->known += 1.0f;
   if (behind > epsilon) {
-    figures->looked_through += 1.0;
+    figures->looked_through += 1.0f;
     return;
   }
-  figures->at_place += 1.0 - std::abs(behind) / epsilon;
-  figures->hits += 1.0;
+  figures->at_place += 1.0f - std::abs(behind) / epsilon;
+  figures->hits += 1.0f;
   figures->agreeing += scene.normal(pixel).dot(normal);
 }
 
@@ -33,15 +33,15 @@ void CountOutside(const Scene& scene, const Eigen::Vector3f& p, float epsilon,
   const float range = scene.range(pixel);
   if (range == 0.0f) return;
   const float behind = range - p.norm();
-  if (behind > epsilon) figures->jumps += 1.0;
-  if (std::abs(behind) <= epsilon) figures->goes_on += 1.0;
+  if (behind > epsilon) figures->jumps += 1.0f;
+  if (std::abs(behind) <= epsilon) figures->goes_on += 1.0f;
 }
 
-void Normalise(double count, double outside_count, RankingFigures* figures) {
-  for (double* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
-                         &figures->known, &figures->agreeing})
+void Normalise(float count, float outside_count, RankingFigures* figures) {
+  for (float* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
+                        &figures->known, &figures->agreeing})
     *figure /= count;
-  if (outside_count <= 0.0) return;
+  if (outside_count <= 0.0f) return;
   figures->goes_on /= outside_count;
   figures->jumps /= outside_count;
 }
@@ -50,13 +50,14 @@ void Normalise(double count, double outside_count, RankingFigures* figures) {
 
 void RankingParams::Validate() const {
   CheckWithin("ranking min_normal_cosine", min_normal_cosine, -1.0, 1.0);
+  CheckWithin("ranking min_tilt", min_tilt, 0.0, 3.2);
+  CheckWithin("ranking max_tilt", max_tilt, 0.0, 3.2);
   CheckWithin("ranking coarse_epsilon", coarse_epsilon, 1e-3, 10.0);
   CheckWithin("ranking fine_epsilon", fine_epsilon, 1e-3, 10.0);
-  CheckWithin("ranking see_through", see_through, 0.0, 1e6);
-  CheckWithin("ranking outside", outside, 0.0, 1e6);
   CheckWithin("ranking first_points", first_points, 1, 10000);
+  CheckWithin("ranking first_min_known", first_min_known, 0.0, 1.0);
   CheckWithin("ranking first_min_share", first_min_share, 0.0, 1.0);
-  CheckWithin("ranking pixels_half", pixels_half, 0.0, 1e6);
+  CheckWithin("ranking max_scanned", max_scanned, 1, 100'000'000);
   CheckWithin("ranking max_refined", max_refined, 1, 1'000'000);
   CheckWithin("ranking max_judged", max_judged, 1, 100'000);
   CheckWithin("ranking same_distance", same_distance, 1e-4, 10.0);
@@ -98,40 +99,33 @@ int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_obj
   return nearest;
 }
 
-std::optional<RankingFigures> CompareViewPoints(const Scene& scene, const RankingModel& model,
-                                                const Eigen::Isometry3f& T_sensor_object,
-                                                double epsilon, const RankingParams& params) {
+bool CompareViewPoints(const Scene& scene, const RankingModel& model,
+                       const Eigen::Isometry3f& T_sensor_object, double epsilon,
+                       const RankingParams& params, RankingFigures* figures) {
   const int nearest = NearestView(model, T_sensor_object);
-  if (nearest < 0) return std::nullopt;
+  if (nearest < 0) return false;
   const RankingView& view = model.views[nearest];
   const std::size_t count = view.surface.points.size();
-  if (count == 0) return std::nullopt;
+  if (count == 0) return false;
   const float eps = static_cast<float>(epsilon);
-  RankingFigures figures;
+  for (float* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
+                        &figures->known, &figures->agreeing, &figures->goes_on, &figures->jumps})
+    *figure = 0.0f;
   const auto compare = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Count(scene, T_sensor_object * view.surface.points[i],
-            T_sensor_object.linear() * view.surface.normals[i], eps, &figures);
+            T_sensor_object.linear() * view.surface.normals[i], eps, figures);
     }
   };
   const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
   compare(0, first);
-  if (figures.hits < params.first_min_share * static_cast<double>(first)) return std::nullopt;
+  if (figures->known < params.first_min_known * static_cast<double>(first)) return false;
+  if (figures->hits < params.first_min_share * figures->known) return false;
   compare(first, count);
   for (const Eigen::Vector3f& point : view.outside)
-    CountOutside(scene, T_sensor_object * point, eps, &figures);
-  Normalise(static_cast<double>(count), static_cast<double>(view.outside.size()), &figures);
-  return figures;
-}
-
-double RankingScore(const Scene& scene, const RankingModel& model,
-                    const Eigen::Isometry3f& T_sensor_object, double epsilon,
-                    const RankingParams& params) {
-  const std::optional<RankingFigures> figures =
-      CompareViewPoints(scene, model, T_sensor_object, epsilon, params);
-  if (!figures) return 0.0;
-  return figures->at_place - params.see_through * figures->looked_through -
-         params.outside * figures->goes_on;
+    CountOutside(scene, T_sensor_object * point, eps, figures);
+  Normalise(static_cast<float>(count), static_cast<float>(view.outside.size()), figures);
+  return true;
 }
 
 }  // namespace rimod

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
 #include <vector>
 
 #include "rimod/object_model.h"
@@ -15,16 +14,19 @@ namespace rimod {
 
 struct RankingParams {
   double min_normal_cosine = 0.7;  // of a correspondence's normals after the turn; -1 .. 1
+  // rad; a correspondence whose normals stay this far apart after the turn gives a tilted pose,
+  // too, in which they agree; max_tilt 0: none
+  double min_tilt = 0.17;
+  double max_tilt = 0.5;
   double coarse_epsilon =
       0.2;                     // m, depth difference of a point at its place before refinement; > 0
   double fine_epsilon = 0.05;  // m, after it; > 0
-  double see_through = 0.5;    // what a point costs that the laser went through; >= 0
-  double outside = 1.0;        // what an outside point costs where the surface goes on; >= 0
   int first_points = 20;       // looked at first; hopeless hypotheses are given up then; >= 1
-  double first_min_share = 0.25;  // of them must be at their place; 0 .. 1
-  double pixels_half = 60.0;  // squared pixels across the object that make a score count half; >= 0
-  int max_refined = 1500;     // best hypotheses of different poses that are refined; >= 1
-  int max_judged = 200;       // best of them after refinement that are judged; >= 1
+  double first_min_known = 0.15;  // of them must have nothing in front; 0 .. 1
+  double first_min_share = 0.25;  // of those must be at their place; 0 .. 1
+  int max_scanned = 6000;       // best hypotheses among which different poses are looked for; >= 1
+  int max_refined = 500;        // best of them that are refined; >= 1
+  int max_judged = 100;         // best of them after refinement that are judged; >= 1
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
   void Validate() const;
@@ -36,7 +38,6 @@ struct RankingView {
       Eigen::Vector3f::Zero();  // unit, from the model's centre, object frame
   SurfaceSample surface;
   std::vector<Eigen::Vector3f> outside;
-  double area_share = 0.0;  // of the visible surface's solid angle times distance squared, m^2
 };
 
 struct RankingModel {
@@ -53,26 +54,32 @@ double PixelsAcross(const Scene& scene, const ObjectModel& model,
 // The view nearest to where the sensor stands; -1 without views.
 int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object);
 
-// What the view's points say of a pose, as shares of their number.
+// What is known of a hypothesis: what the view's points say of its pose, as shares of their number,
+// and where it comes from.
 struct RankingFigures {
-  double at_place = 0.0;        // sum of 1 - |depth difference| / epsilon
-  double hits = 0.0;            // points within epsilon
-  double looked_through = 0.0;  // points in front of what was measured
-  double known = 0.0;           // points that nothing is in front of
-  double agreeing = 0.0;        // sum of the cosines between measured and model normals at the hits
-  double goes_on = 0.0;         // of the outside points: the scene is at their depth
-  double jumps = 0.0;           // of the outside points: the scene is deeper
+  float at_place = 0.0f;        // sum of 1 - |depth difference| / epsilon
+  float hits = 0.0f;            // points within epsilon
+  float looked_through = 0.0f;  // points in front of what was measured
+  float known = 0.0f;           // points that nothing is in front of
+  float agreeing = 0.0f;        // sum of the cosines between measured and model normals at the hits
+  float goes_on = 0.0f;         // of the outside points: the scene is at their depth
+  float jumps = 0.0f;           // of the outside points: the scene is deeper
+  float pixels_across = 0.0f;   // that the model's diameter spans
+  float tilt = 0.0f;            // rad, of the object's z-axis
+  float descriptor_distance = 0.0f;  // m, of the correspondence that it comes from
+  float votes = 1.0f;                // hypotheses of the same pose, with itself
 };
 
-// Nothing for hopeless poses: too few of the first points at their place.
-std::optional<RankingFigures> CompareViewPoints(const Scene& scene, const RankingModel& model,
-                                                const Eigen::Isometry3f& T_sensor_object,
-                                                double epsilon, const RankingParams& params);
+// How many of the scene's features a pose explains.
+struct FeatureSupport {
+  int inside = 0;    // lie in the object's box
+  int matching = 0;  // .. and have a correspondence to the model's feature at that very place
+};
 
-// Score of a pose, at most 1: points at their place, less those that were looked through and
-// outside points where the surface goes on. 0 for hopeless ones.
-double RankingScore(const Scene& scene, const RankingModel& model,
-                    const Eigen::Isometry3f& T_sensor_object, double epsilon,
-                    const RankingParams& params);
+// Sets the figures of the view's points, leaves the others. False for hopeless poses: too few of
+// the first points at their place.
+bool CompareViewPoints(const Scene& scene, const RankingModel& model,
+                       const Eigen::Isometry3f& T_sensor_object, double epsilon,
+                       const RankingParams& params, RankingFigures* figures);
 
 }  // namespace rimod

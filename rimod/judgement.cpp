@@ -31,8 +31,8 @@ double Probability(const BoostedTrees& trees, const std::vector<double>& figures
   return 1.0 / (1.0 + std::exp(-sum));
 }
 
-std::vector<double> RankFigures(const RankingFigures& f, double pixels_across) {
-  const double size = std::log(std::max(pixels_across, 1.0));
+std::vector<double> RankFigures(const RankingFigures& f) {
+  const double size = std::log(std::max(f.pixels_across, 1.0f));
   return {f.at_place,
           f.hits,
           f.looked_through,
@@ -47,18 +47,26 @@ std::vector<double> RankFigures(const RankingFigures& f, double pixels_across) {
           f.agreeing / (f.hits + kSmallShare),
           f.at_place / (f.known + kSmallShare),
           f.hits / (f.known + kSmallShare),
-          f.goes_on / (f.goes_on + f.jumps + kSmallShare)};
+          f.goes_on / (f.goes_on + f.jumps + kSmallShare),
+          f.tilt,
+          f.descriptor_distance,
+          std::log(f.votes)};
 }
 
-std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& f) {
+std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& f,
+                                     const FeatureSupport& support) {
   std::vector<double> figures(evidence.values.begin(), evidence.values.end());
   const double size = evidence.values[kLogMatchedPixels];
   for (const EvidenceIndex index : {kMatched, kSeenThrough, kMatchedOfKnown, kSilhouetteContinues,
                                     kSilhouetteKnown, kUnexplained, kNormalAgreement, kResidual})
     figures.push_back(evidence.values[index] * size);
-  for (const double value : {f.at_place, f.looked_through, f.agreeing / (f.hits + kSmallShare),
-                             f.goes_on / (f.goes_on + f.jumps + kSmallShare)})
+  for (const double value :
+       {double{f.at_place}, double{f.looked_through}, f.agreeing / (f.hits + kSmallShare),
+        f.goes_on / (f.goes_on + f.jumps + kSmallShare), static_cast<double>(std::log(f.votes))})
     figures.push_back(value);
+  figures.push_back(std::log1p(support.inside));
+  figures.push_back(std::log1p(support.matching));
+  figures.push_back(static_cast<double>(support.matching) / (support.inside + 1));
   return figures;
 }
 

@@ -8,9 +8,9 @@
 
 namespace rimod {
 
-// What figures mean: probabilities by logistic regression, one set of weights for all classes. The
-// weights stand in judgement_weights.cpp and are learnt by experiments/train_judgement
-// (docs/accuracy.md).
+// What figures mean: probabilities by logistic regression or boosted trees, one set of weights for
+// all classes. The weights stand in judgement_weights.cpp and are learnt by
+// experiments/train_judgement (docs/accuracy.md).
 
 // Weights of a logistic regression over standardised figures.
 struct LogisticWeights {
@@ -37,15 +37,16 @@ struct BoostedTrees {
 double Probability(const LogisticWeights& weights, const std::vector<double>& figures);
 double Probability(const BoostedTrees& trees, const std::vector<double>& figures);
 
-// The figures that a hypothesis is ranked by: those of the view's points, their ratios and the
-// object's size in the image (pixels across).
-std::vector<double> RankFigures(const RankingFigures& figures, double pixels_across);
+// The figures that a hypothesis is scored and ranked by: what is known of it, and ratios of that.
+std::vector<double> RankFigures(const RankingFigures& figures);
 
 // The figures that a detection is judged by: the evidence, its products with the object's size in
-// the image, and the rank's.
-std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& figures);
+// the image, the rank's, and the support.
+std::vector<double> JudgementFigures(const Evidence& evidence, const RankingFigures& figures,
+                                     const FeatureSupport& support);
 
-extern const LogisticWeights kRankWeights;
+extern const LogisticWeights kProposalWeights;  // before refinement
+extern const LogisticWeights kRankWeights;      // after it
 extern const BoostedTrees kJudgementTrees;
 
 }  // namespace rimod

@@ -20,6 +20,7 @@ PipelineParams PaperParams() {
   params.range_patch.resolution = 8;
   params.range_patch.support_size = 0.35;
   params.range_patch.normal_radius = 0.1;
+  params.range_patch.normal_pixels = 2.0;
   params.range_patch.mask_empty_cells = true;
   params.model_views.azimuths = 12;
   params.model_views.elevations = 2;
@@ -81,6 +82,7 @@ PipelineParams OwnParams() {
   params.interest_points.measure = InterestMeasure::kSurfaceChange;
   params.interest_points.max_points = 2000;
   params.interest_points.suppression_radius = 0.045;
+  params.range_patch.normal_pixels = 2.0;
   params.range_patch.mask_empty_cells = false;
   params.model_views.ground_margin = 0.5;
   params.matching.max_descriptor_distance = 0.16;

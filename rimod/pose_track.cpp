@@ -66,7 +66,7 @@ PoseMotion PoseTrack::MotionAfter(std::size_t index, Time reference) const {
   const Eigen::Quaterniond turn = from.orientation.conjugate() * to.orientation;
   const Eigen::AngleAxisd angle_axis(turn);
   motion.angle = angle_axis.angle();
-  const Eigen::Vector3d axis = angle_axis.axis();
+  const Eigen::Vector3d& axis = angle_axis.axis();
   const Eigen::Matrix3d R = from.orientation.toRotationMatrix();
   const Eigen::Matrix3d along = R * (axis * axis.transpose());
   motion.fixed = along.leftCols<2>();

@@ -95,6 +95,7 @@ void RangePatchParams::Validate() const {
   CheckWithin("range_patch resolution", resolution, 2, 16);
   CheckWithin("range_patch support_size", support_size, 0.02, 2.0);
   CheckWithin("range_patch normal_radius", normal_radius, 0.01, 2.0);
+  CheckWithin("range_patch normal_pixels", normal_pixels, 0.0, 100.0);
   CheckWithin("range_patch min_points", min_points, 3, 10000);
   CheckWithin("range_patch max_vertical_cosine", max_vertical_cosine, 0.0, 1.0);
 }
@@ -102,8 +103,8 @@ void RangePatchParams::Validate() const {
 std::string RangePatchParams::Kind() const {
   std::ostringstream kind;
   kind << "range_patch " << resolution << "x" << resolution << " support " << support_size
-       << " normal " << normal_radius << " vertical " << max_vertical_cosine
-       << (mask_empty_cells ? " masked" : " filled");
+       << " normal " << normal_radius << " or pixels " << normal_pixels << " vertical "
+       << max_vertical_cosine << (mask_empty_cells ? " masked" : " filled");
   return kind.str();
 }
 
@@ -149,8 +150,10 @@ std::optional<Eigen::Vector3d> NormalAt(const RangeImage& image, const PixelInde
 
 std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& pixel,
                                      const RangePatchParams& params) {
+  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  const double normal_radius = std::max(params.normal_radius, params.normal_pixels * spacing);
   const std::optional<Eigen::Vector3d> normal =
-      NormalAt(image, pixel, params.normal_radius, params.min_points);
+      NormalAt(image, pixel, normal_radius, params.min_points);
   if (!normal) return std::nullopt;
   Feature feature;
   feature.position = image.point(pixel.row, pixel.column);
@@ -165,8 +168,8 @@ std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& 
   const double reach = params.support_size * std::sqrt(0.5);  // half the square's diagonal
   VisitNeighbourhood(image, pixel, reach, [&](const Eigen::Vector3f& point, int step) {
     const Eigen::Vector3f p_patch = R_patch_sensor * (point - feature.position);
-    const double spacing = step * image.grid().resolution * point.norm();
-    Splat(p_patch, static_cast<float>(0.5 * spacing), static_cast<float>(cell), &heights);
+    const double footprint = 0.5 * step * image.grid().resolution * point.norm();
+    Splat(p_patch, static_cast<float>(footprint), static_cast<float>(cell), &heights);
   });
   feature.descriptor = ToDescriptor(heights, params.mask_empty_cells);
   return feature;

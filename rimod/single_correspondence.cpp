@@ -1,5 +1,6 @@
 #include "rimod/single_correspondence.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rimod {
@@ -23,6 +24,20 @@ std::optional<Eigen::Isometry3d> PoseFromCorrespondence(const Feature& scene, co
   T_sensor_object.translation() =
       scene.position.cast<double>() - T_sensor_object.linear() * model.position.cast<double>();
   return T_sensor_object;
+}
+
+std::optional<Eigen::Isometry3d> TiltedToNormal(const Eigen::Isometry3d& T_sensor_object,
+                                                const Feature& scene, const Feature& model,
+                                                double min_angle, double max_angle) {
+  const Eigen::Vector3d wanted = scene.normal.cast<double>();
+  const Eigen::Vector3d normal = T_sensor_object.linear() * model.normal.cast<double>();
+  const double angle = std::acos(std::clamp(normal.dot(wanted), -1.0, 1.0));
+  if (angle < min_angle || angle > max_angle) return std::nullopt;
+  Eigen::Isometry3d tilted = T_sensor_object;
+  tilted.linear() = Eigen::Quaterniond::FromTwoVectors(normal, wanted) * T_sensor_object.linear();
+  tilted.translation() =
+      scene.position.cast<double>() - tilted.linear() * model.position.cast<double>();
+  return tilted;
 }
 
 }  // namespace rimod

@@ -18,4 +18,10 @@ std::optional<Eigen::Isometry3d> PoseFromCorrespondence(const Feature& scene, co
                                                         double max_vertical_cosine,
                                                         double min_normal_cosine);
 
+// The pose turned further about the feature, the shortest way, until the normals agree: for objects
+// that lean. Nothing when they are less than min_angle or more than max_angle (rad) apart.
+std::optional<Eigen::Isometry3d> TiltedToNormal(const Eigen::Isometry3d& T_sensor_object,
+                                                const Feature& scene, const Feature& model,
+                                                double min_angle, double max_angle);
+
 }  // namespace rimod

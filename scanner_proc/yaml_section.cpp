@@ -18,7 +18,7 @@ std::string Text(double value) {
 std::string Quoted(const YAML::Node& node) {
   constexpr std::size_t kLongest = 40;
   if (!node.IsScalar()) return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "nothing";
-  const std::string text = node.Scalar();
+  const std::string& text = node.Scalar();
   return "'" + (text.size() <= kLongest ? text : text.substr(0, kLongest) + "...") + "'";
 }
 
