@@ -127,30 +127,49 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
                  [](std::int16_t value) { return value == kEmptyCell ? 0.0f : 1.0f; });
   const double max_sq = max_distance * max_distance * size_;
 
+  // The max_matches nearest so far, the farthest on top.
+  double worst_sq = max_sq;
+  const auto keep = [&](int index, double distance_sq) {
+    if (distance_sq * size_ > worst_sq) return;
+    const DescriptorMatch match{index, distance_sq};  // squared until the end
+    if (static_cast<int>(found.size()) == max_matches) {
+      if (!Nearer(match, found.front())) return;
+      std::pop_heap(found.begin(), found.end(), Nearer);
+      found.back() = match;
+    } else {
+      found.push_back(match);
+    }
+    std::push_heap(found.begin(), found.end(), Nearer);
+    // Over shared cells alone distances may be smaller than the tree's bounds.
+    if (min_shared == 0 && static_cast<int>(found.size()) == max_matches)
+      worst_sq = std::min(worst_sq, found.front().distance * size_);
+  };
+
   std::priority_queue<Branch> branches;
   branches.push({0.0, 0});
   int checks = 0;
   while (!branches.empty() && checks < max_checks) {
     const Branch branch = branches.top();
     branches.pop();
-    if (branch.bound_sq > max_sq) break;
+    if (branch.bound_sq > worst_sq) break;  // all others are farther, too
     int node = branch.node;
     while (nodes_[node].dimension >= 0) {
       const double gap = static_cast<double>(q[nodes_[node].dimension]) - nodes_[node].split;
       const int near = gap < 0.0 ? nodes_[node].left : nodes_[node].right;
       const int far = gap < 0.0 ? nodes_[node].right : nodes_[node].left;
-      branches.push({std::max(branch.bound_sq, gap * gap), far});
+      const double bound_sq = std::max(branch.bound_sq, gap * gap);
+      if (bound_sq <= worst_sq) branches.push({bound_sq, far});
       node = near;
     }
     for (int i = nodes_[node].first; i < nodes_[node].last; ++i) {
       ++checks;
       const double distance_sq = min_shared > 0 ? SharedDistanceSq(q, filled, order_[i], min_shared)
                                                 : DistanceSq(q, order_[i]);
-      if (distance_sq * size_ <= max_sq) found.push_back({order_[i], std::sqrt(distance_sq)});
+      keep(order_[i], distance_sq);
     }
   }
-  std::sort(found.begin(), found.end(), Nearer);
-  if (static_cast<int>(found.size()) > max_matches) found.resize(max_matches);
+  std::sort_heap(found.begin(), found.end(), Nearer);
+  for (DescriptorMatch& match : found) match.distance = std::sqrt(match.distance);
   return found;
 }
 

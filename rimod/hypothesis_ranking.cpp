@@ -8,13 +8,15 @@
 namespace rimod {
 namespace {
 
-void Count(const Scene& scene, const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
-           float epsilon, RankingFigures* figures) {
-  const int pixel = scene.PixelOf(p);
+// What one of the surface's points says: the pixel where it falls, its distance from the sensor and
+// its normal (sensor frame) as far as it is needed.
+template <typename Normal>
+void Count(const Scene& scene, int pixel, float range, const Normal& normal, float epsilon,
+           RankingFigures* figures) {
   if (pixel < 0) return;
-  const float range = scene.range(pixel);
-  if (range == 0.0f) return;
-  const float behind = range - p.norm();
+  const float measured = scene.range(pixel);
+  if (measured == 0.0f) return;
+  const float behind = measured - range;
   if (behind < -epsilon) return;  // occluded
   figures->known += 1.0f;
   if (behind > epsilon) {
@@ -23,16 +25,15 @@ void Count(const Scene& scene, const Eigen::Vector3f& p, const Eigen::Vector3f& 
   }
   figures->at_place += 1.0f - std::abs(behind) / epsilon;
   figures->hits += 1.0f;
-  figures->agreeing += scene.normal(pixel).dot(normal);
+  figures->agreeing += scene.normal(pixel).dot(normal());
 }
 
-void CountOutside(const Scene& scene, const Eigen::Vector3f& p, float epsilon,
+void CountOutside(const Scene& scene, int pixel, float range, float epsilon,
                   RankingFigures* figures) {
-  const int pixel = scene.PixelOf(p);
   if (pixel < 0) return;
-  const float range = scene.range(pixel);
-  if (range == 0.0f) return;
-  const float behind = range - p.norm();
+  const float measured = scene.range(pixel);
+  if (measured == 0.0f) return;
+  const float behind = measured - range;
   if (behind > epsilon) figures->jumps += 1.0f;
   if (std::abs(behind) <= epsilon) figures->goes_on += 1.0f;
 }
@@ -72,7 +73,8 @@ RankingModel MakeRankingModel(const ObjectModel& model) {
     RankingView ranking_view;
     ranking_view.direction = (view.viewpoint - centre).normalized().cast<float>();
     ranking_view.surface = {view.validation_points, view.validation_normals};
-    ranking_view.outside = view.outside_points;
+    ranking_view.points = PointColumns(view.validation_points);
+    ranking_view.outside = PointColumns(view.outside_points);
     ranking.views.push_back(std::move(ranking_view));
   }
   return ranking;
@@ -111,10 +113,14 @@ bool CompareViewPoints(const Scene& scene, const RankingModel& model,
   for (float* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
                         &figures->known, &figures->agreeing, &figures->goes_on, &figures->jumps})
     *figure = 0.0f;
+  ProjectedPoints projected;
   const auto compare = [&](std::size_t begin, std::size_t end) {
+    scene.Project(view.points, T_sensor_object, begin, end, &projected);
     for (std::size_t i = begin; i < end; ++i) {
-      Count(scene, T_sensor_object * view.surface.points[i],
-            T_sensor_object.linear() * view.surface.normals[i], eps, figures);
+      const auto normal = [&]() -> Eigen::Vector3f {
+        return T_sensor_object.linear() * view.surface.normals[i];
+      };
+      Count(scene, projected.pixels[i], projected.ranges[i], normal, eps, figures);
     }
   };
   const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
@@ -122,8 +128,9 @@ bool CompareViewPoints(const Scene& scene, const RankingModel& model,
   if (figures->known < params.first_min_known * static_cast<double>(first)) return false;
   if (figures->hits < params.first_min_share * figures->known) return false;
   compare(first, count);
-  for (const Eigen::Vector3f& point : view.outside)
-    CountOutside(scene, T_sensor_object * point, eps, figures);
+  scene.Project(view.outside, T_sensor_object, 0, view.outside.size(), &projected);
+  for (std::size_t i = 0; i < view.outside.size(); ++i)
+    CountOutside(scene, projected.pixels[i], projected.ranges[i], eps, figures);
   Normalise(static_cast<float>(count), static_cast<float>(view.outside.size()), figures);
   return true;
 }

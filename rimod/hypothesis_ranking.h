@@ -37,7 +37,8 @@ struct RankingView {
   Eigen::Vector3f direction =
       Eigen::Vector3f::Zero();  // unit, from the model's centre, object frame
   SurfaceSample surface;
-  std::vector<Eigen::Vector3f> outside;
+  PointColumns points;   // of the surface
+  PointColumns outside;  // beside its silhouette
 };
 
 struct RankingModel {

@@ -18,7 +18,7 @@ struct RangePatchParams {
   double normal_radius = 0.1;
   double normal_pixels = 0.0;  // .. but at least this many pixels reach far (m: times their size),
                                // for far surfaces; 0 .. 100
-  int min_points = 8;  // measured points needed for a normal; >= 3
+  int min_points = 8;          // measured points needed for a normal; >= 3
   // Cells that no point falls into: left out of the comparison, or at the patch's mean.
   bool mask_empty_cells = true;
   double max_vertical_cosine =

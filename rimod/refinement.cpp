@@ -60,11 +60,12 @@ Equations Linearise(const Scene& scene, const SurfaceSample& surface,
     Vector6f jacobian;
     jacobian << arm.y() * n.z() - arm.z() * n.y(), arm.z() * n.x() - arm.x() * n.z(),
         arm.x() * n.y() - arm.y() * n.x(), n.x(), n.y(), n.z();
-    equations.A.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    equations.b += weight * residual * jacobian;
+    const Vector6f weighted = weight * jacobian;
+    for (int column = 0; column < 6; ++column)
+      equations.A.col(column) += weighted[column] * jacobian;
+    equations.b += residual * weighted;
     ++equations.count;
   }
-  equations.A = equations.A.selfadjointView<Eigen::Lower>();
   return equations;
 }
 

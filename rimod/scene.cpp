@@ -20,13 +20,14 @@ float AtanUnit(float t) {
   return t * sum;
 }
 
+// Without branches, so that loops over it are vectorised.
 float FastAtan2(float y, float x) {
-  constexpr float kPi = 3.14159265f;
+  constexpr float kPi = 3.14159265f, kTiny = 1e-30f;
   const float ax = std::abs(x), ay = std::abs(y);
-  const float larger = std::max(ax, ay), smaller = std::min(ax, ay);
-  float angle = larger > 0.0f ? AtanUnit(smaller / larger) : 0.0f;
-  if (ay > ax) angle = 0.5f * kPi - angle;
-  if (x < 0.0f) angle = kPi - angle;
+  const float larger = ax > ay ? ax : ay, smaller = ax > ay ? ay : ax;
+  const float first = AtanUnit(smaller / (larger > kTiny ? larger : kTiny));
+  const float steep = ay > ax ? 0.5f * kPi - first : first;
+  const float angle = x < 0.0f ? kPi - steep : steep;
   return y < 0.0f ? -angle : angle;
 }
 
@@ -63,6 +64,14 @@ Eigen::Vector3f NormalOf(const RangeImage& image, int row, int column, float rad
 
 }  // namespace
 
+PointColumns::PointColumns(const std::vector<Eigen::Vector3f>& points) {
+  for (const Eigen::Vector3f& point : points) {
+    x.push_back(point.x());
+    y.push_back(point.y());
+    z.push_back(point.z());
+  }
+}
+
 Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution)
     : image_(image),
       azimuth_left_(static_cast<float>(image.grid().azimuth_left)),
@@ -93,6 +102,34 @@ int Scene::PixelOf(float x, float y, float z) const {
   if (!(row >= 0.0f && column >= 0.0f)) return -1;
   const int r = static_cast<int>(row), c = static_cast<int>(column);
   return r < height_ && c < width_ ? r * width_ + c : -1;
+}
+
+void Scene::Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+                    std::size_t begin, std::size_t end, ProjectedPoints* projected) const {
+  projected->pixels.resize(std::max(projected->pixels.size(), end));
+  projected->ranges.resize(projected->pixels.size());
+  const Eigen::Matrix3f R = T_sensor_object.linear();
+  const Eigen::Vector3f t = T_sensor_object.translation();
+  const float* const px = points.x.data();
+  const float* const py = points.y.data();
+  const float* const pz = points.z.data();
+  int* const pixels = projected->pixels.data();
+  float* const ranges = projected->ranges.data();
+  const float height = static_cast<float>(height_), width = static_cast<float>(width_);
+  for (std::size_t i = begin; i < end; ++i) {
+    const float x = R(0, 0) * px[i] + R(0, 1) * py[i] + R(0, 2) * pz[i] + t.x();
+    const float y = R(1, 0) * px[i] + R(1, 1) * py[i] + R(1, 2) * pz[i] + t.y();
+    const float z = R(2, 0) * px[i] + R(2, 1) * py[i] + R(2, 2) * pz[i] + t.z();
+    const float horizontal_sq = x * x + y * y;
+    ranges[i] = std::sqrt(horizontal_sq + z * z);
+    const float column = (azimuth_left_ - FastAtan2(y, x)) * pixels_per_radian_;
+    const float row =
+        (elevation_top_ - FastAtan2(z, std::sqrt(horizontal_sq))) * pixels_per_radian_;
+    const bool inside = (row >= 0.0f) & (row < height) & (column >= 0.0f) & (column < width);
+    const int r = static_cast<int>(inside ? row : 0.0f);
+    const int c = static_cast<int>(inside ? column : 0.0f);
+    pixels[i] = inside ? r * width_ + c : -1;
+  }
 }
 
 }  // namespace rimod

@@ -8,10 +8,18 @@
 
 namespace rimod {
 
-// Pixel of a point, both coordinates counted in pixels, or outside.
-struct FastPixel {
-  int row = 0;
-  int column = 0;
+// Points by coordinate, m, for loops over many of them.
+struct PointColumns {
+  PointColumns() = default;
+  explicit PointColumns(const std::vector<Eigen::Vector3f>& points);
+  std::size_t size() const { return x.size(); }
+  std::vector<float> x, y, z;
+};
+
+// Where points fall in an image: pixel indices, -1 outside, and distances from the sensor, m.
+struct ProjectedPoints {
+  std::vector<int> pixels;
+  std::vector<float> ranges;
 };
 
 // A range image made ready for many look-ups: ranges and normals in plain arrays and a projection
@@ -26,6 +34,10 @@ class Scene {
   // Index of the pixel that a point (level sensor frame) falls into, -1 when outside the image.
   int PixelOf(float x, float y, float z) const;
   int PixelOf(const Eigen::Vector3f& p) const { return PixelOf(p.x(), p.y(), p.z()); }
+
+  // The same for the points [begin, end) of a piece of surface at a pose; the others' entries stay.
+  void Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+               std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
 
   // By pixel index. m; 0 never observed, infinite where there was no return.
   float range(int pixel) const { return ranges_[pixel]; }

@@ -77,6 +77,29 @@ RenderedModel EmptyWindow(const std::vector<Splat>& splats, const SphericalGrid&
   return rendered;
 }
 
+// Unit vectors through the pixels' centres of a window.
+class BeamTable {
+ public:
+  BeamTable(const RenderedModel& window, const SphericalGrid& grid) {
+    for (int row = 0; row < window.height; ++row) {
+      const Direction direction = PixelDirection(grid, window.first_row + row + 0.5, 0.0);
+      vertical_.emplace_back(std::cos(direction.elevation), std::sin(direction.elevation));
+    }
+    for (int column = 0; column < window.width; ++column) {
+      const Direction direction = PixelDirection(grid, 0.0, window.first_column + column + 0.5);
+      horizontal_.emplace_back(std::cos(direction.azimuth), std::sin(direction.azimuth));
+    }
+  }
+  Eigen::Vector3d At(int row, int column) const {
+    const Eigen::Vector2d& v = vertical_[row];
+    const Eigen::Vector2d& h = horizontal_[column];
+    return {v.x() * h.x(), v.x() * h.y(), v.y()};
+  }
+
+ private:
+  std::vector<Eigen::Vector2d> vertical_, horizontal_;  // cosine and sine
+};
+
 }  // namespace
 
 int RenderedModel::CountSeen() const {
@@ -88,6 +111,7 @@ RenderedModel RenderModel(const ObjectModel& model, const Eigen::Isometry3d& T_s
                           const SphericalGrid& grid) {
   const std::vector<Splat> splats = VisibleSplats(model, T_sensor_object, grid);
   RenderedModel rendered = EmptyWindow(splats, grid);
+  const BeamTable beams(rendered, grid);
   for (const Splat& splat : splats) {
     const Extent rows = CoveredPixels(splat.row, splat.reach_rows, grid.height);
     const Extent columns = CoveredPixels(splat.column, splat.reach_columns, grid.width);
@@ -95,7 +119,8 @@ RenderedModel RenderModel(const ObjectModel& model, const Eigen::Isometry3d& T_s
     const double plane = splat.normal.dot(splat.point);
     for (int row = rows.first; row <= rows.last; ++row) {
       for (int column = columns.first; column <= columns.last; ++column) {
-        const Eigen::Vector3d beam = UnitVector(PixelDirection(grid, row + 0.5, column + 0.5));
+        const Eigen::Vector3d beam =
+            beams.At(row - rendered.first_row, column - rendered.first_column);
         const double on_plane = plane / std::min(splat.normal.dot(beam), -kMinCosine);
         const float range =
             static_cast<float>(std::clamp(on_plane, splat.range - 2 * model.point_spacing,
