@@ -164,12 +164,15 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"ranking", "same_distance", &r.same_distance, "m, poses nearer than this ..; > 0"},
       {"ranking", "same_angle_deg", DegreesOf{&r.same_angle}, ".. and turned by less are the same; > 0"},
 
-      {"refinement", "coarse_iterations", &f.coarse_iterations, "of every candidate, upright; 0 .. 100"},
-      {"refinement", "fine_iterations", &f.fine_iterations, "of the best candidates, all degrees of freedom; 0 .. 100"},
+      {"refinement", "coarse_iterations", &f.coarse_iterations, "of every hypothesis that is ranked; 0 .. 100"},
+      {"refinement", "fine_iterations", &f.fine_iterations, "of the candidates that are judged; 0 .. 100"},
       {"refinement", "coarse_gate", &f.coarse_gate, "m, farther pairs are left out at first ..; > 0"},
       {"refinement", "fine_gate", &f.fine_gate, "m, .. and in the end; > 0"},
       {"refinement", "judged_first_gate", &f.judged_first_gate, "m, the same before judging, at first ..; > 0"},
       {"refinement", "judged_last_gate", &f.judged_last_gate, "m, .. and in the end; > 0"},
+      {"refinement", "final_iterations", &f.final_iterations, "of what is found, with all points; 0 .. 100"},
+      {"refinement", "final_gate", &f.final_gate, "m, farther pairs are left out then; > 0"},
+      {"refinement", "final_damping", &f.final_damping, "instead of the others; > 0"},
       {"refinement", "damping", &f.damping, "of the points' number, keeps what they do not determine; > 0"},
       {"refinement", "tilt_damping", &f.tilt_damping, "the same for the tilt from the vertical; > 0"},
 

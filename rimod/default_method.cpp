@@ -184,7 +184,7 @@ std::vector<Hypothesis> BestWithVotes(std::vector<Hypothesis> hypotheses,
 // ICP with the nearest view's points, then the score that was learnt.
 void RefineAndRank(const Scene& scene, const ModelDatabase& database, const PipelineParams& params,
                    const Execution& execution, std::vector<Hypothesis>* hypotheses) {
-  const RefinementParams& refinement = params.refinement;
+  const RefinementSchedule schedule = params.refinement.BeforeRanking();
   execution.parallel_for(hypotheses->size(), [&](std::size_t i) {
     Hypothesis& hypothesis = (*hypotheses)[i];
     const RankingModel& model = database.ranking_models()[hypothesis.model];
@@ -192,9 +192,7 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
     hypothesis.score = 0.0;
     if (view < 0) return;
     hypothesis.T_sensor_object =
-        RefinePose(scene, model.views[view].surface, hypothesis.T_sensor_object, Freedom::kAll,
-                   refinement.coarse_iterations, refinement.coarse_gate, refinement.fine_gate,
-                   refinement.damping, refinement.tilt_damping);
+        RefinePose(scene, model.views[view].surface, hypothesis.T_sensor_object, schedule);
     if (SetFigures(scene, database, params.ranking.fine_epsilon, params.ranking, &hypothesis))
       hypothesis.score = Probability(kRankWeights, RankFigures(hypothesis.figures));
   });
@@ -292,7 +290,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
                                              const PipelineParams& params,
                                              const Execution& execution) {
   const StageScope stage(execution, "validation");
-  const RefinementParams& refinement = params.refinement;
+  const RefinementSchedule schedule = params.refinement.BeforeJudging();
   const std::vector<std::size_t> first_matches = FirstMatches(features, matches);
   std::vector<JudgedCandidate> judged(ranked.size());
   execution.parallel_for(ranked.size(), [&](std::size_t i) {
@@ -301,10 +299,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
     result.figures = ranked[i].figures;
     const JudgedModel& model = database.judged_models()[result.candidate.model];
     result.candidate.T_sensor_object =
-        RefinePose(scene, model.sample(), ranked[i].T_sensor_object, Freedom::kAll,
-                   refinement.fine_iterations, refinement.judged_first_gate,
-                   refinement.judged_last_gate, refinement.damping, refinement.tilt_damping)
-            .cast<double>();
+        RefinePose(scene, model.sample(), ranked[i].T_sensor_object, schedule).cast<double>();
     result.evidence =
         GatherEvidence(scene, model, result.candidate.T_sensor_object, params.evidence);
     result.support = Support(features, matches, first_matches, database, result.candidate);
@@ -348,6 +343,23 @@ std::vector<Candidate> ChooseCandidates(const Scene& scene,
   return chosen;
 }
 
+namespace {
+
+void RefineDetections(const Scene& scene, const ModelDatabase& database,
+                      const PipelineParams& params, const Execution& execution,
+                      CandidateList* detections) {
+  const StageScope stage(execution, "final_refinement");
+  execution.parallel_for(detections->size(), [&](std::size_t i) {
+    Candidate& detection = (*detections)[i];
+    detection.T_sensor_object =
+        RefinePose(scene, database.judged_models()[detection.model].sample(),
+                   detection.T_sensor_object.cast<float>(), params.refinement.OfDetections())
+            .cast<double>();
+  });
+}
+
+}  // namespace
+
 StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
                                 const ModelDatabase& database, const PipelineParams& params,
                                 const Execution& execution) {
@@ -364,6 +376,7 @@ StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& featu
   const std::vector<JudgedCandidate> judged =
       JudgeCandidates(scene, features, matches, ranked, database, params, execution);
   found.validated = ChooseCandidates(scene, judged, database, params, execution);
+  RefineDetections(scene, database, params, execution, &found.validated);
   for (const JudgedCandidate& candidate : judged) found.scored.push_back(candidate.candidate);
   return found;
 }

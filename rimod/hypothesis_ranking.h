@@ -21,10 +21,10 @@ struct RankingParams {
   double coarse_epsilon =
       0.2;                     // m, depth difference of a point at its place before refinement; > 0
   double fine_epsilon = 0.05;  // m, after it; > 0
-  int first_points = 20;       // looked at first; hopeless hypotheses are given up then; >= 1
+  int first_points = 12;       // looked at first; hopeless hypotheses are given up then; >= 1
   double first_min_known = 0.15;  // of them must have nothing in front; 0 .. 1
-  double first_min_share = 0.25;  // of those must be at their place; 0 .. 1
-  int max_scanned = 6000;       // best hypotheses among which different poses are looked for; >= 1
+  double first_min_share = 0.35;  // of those must be at their place; 0 .. 1
+  int max_scanned = 4000;       // best hypotheses among which different poses are looked for; >= 1
   int max_refined = 500;        // best of them that are refined; >= 1
   int max_judged = 100;         // best of them after refinement that are judged; >= 1
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0

@@ -88,9 +88,9 @@ CandidateList RefineCandidates(const RangeImage& image, const CandidateList& can
     const SurfaceSample surface{model.views[view].validation_points,
                                 model.views[view].validation_normals};
     refined[i].T_sensor_object =
-        RefinePose(scene, surface, refined[i].T_sensor_object.cast<float>(), Freedom::kAll,
-                   refinement.iterations, refinement.first_gate, refinement.last_gate,
-                   refinement.damping, refinement.damping)
+        RefinePose(scene, surface, refined[i].T_sensor_object.cast<float>(),
+                   {refinement.iterations, refinement.first_gate, refinement.last_gate,
+                    refinement.damping, refinement.damping})
             .cast<double>();
   });
   return refined;

@@ -13,26 +13,38 @@ struct SurfaceSample {
   std::vector<Eigen::Vector3f> normals;
 };
 
+// How one refinement goes.
+struct RefinementSchedule {
+  int iterations = 10;
+  double first_gate = 0.15;    // m, farther pairs are left out at first ..; > 0
+  double last_gate = 0.05;     // m, .. and in the end; > 0
+  double damping = 0.02;       // of the points' number, keeps what they do not determine; > 0
+  double tilt_damping = 0.05;  // the same for the tilt from the vertical; > 0
+};
+
 struct RefinementParams {
-  int coarse_iterations = 6;        // of every candidate, upright (4 degrees of freedom); 0 .. 100
-  int fine_iterations = 10;         // of the best candidates, all degrees of freedom; 0 .. 100
+  int coarse_iterations = 6;        // of every hypothesis that is ranked; 0 .. 100
+  int fine_iterations = 10;         // of the candidates that are judged; 0 .. 100
   double coarse_gate = 0.15;        // m, farther pairs are left out at first ..; > 0
   double fine_gate = 0.05;          // m, .. and in the end; > 0
   double judged_first_gate = 0.08;  // m, the same for the refinement before judging
   double judged_last_gate = 0.03;   // m
+  int final_iterations = 10;        // of what is found, with all points; 0 .. 100
+  double final_gate = 0.03;         // m, farther pairs are left out; > 0
+  double final_damping = 0.005;     // instead of the others; > 0
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
   void Validate() const;
+  RefinementSchedule BeforeRanking() const;
+  RefinementSchedule BeforeJudging() const;
+  RefinementSchedule OfDetections() const;
 };
-
-enum class Freedom { kUpright, kAll };  // heading and position, or all six degrees of freedom
 
 // Projective point-to-plane ICP: each surface point facing the sensor is paired with the nearest
 // scene point of the 3 x 3 pixels where it falls; the pose moves along the surface's normals. The
-// gate shrinks from first_gate to last_gate (m) over the iterations.
+// gate shrinks from first_gate to last_gate over the iterations. All six degrees of freedom.
 Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
-                             const Eigen::Isometry3f& T_sensor_object, Freedom freedom,
-                             int iterations, double first_gate, double last_gate, double damping,
-                             double tilt_damping);
+                             const Eigen::Isometry3f& T_sensor_object,
+                             const RefinementSchedule& schedule);
 
 }  // namespace rimod

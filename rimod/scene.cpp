@@ -65,11 +65,13 @@ Eigen::Vector3f NormalOf(const RangeImage& image, int row, int column, float rad
 }  // namespace
 
 PointColumns::PointColumns(const std::vector<Eigen::Vector3f>& points) {
-  for (const Eigen::Vector3f& point : points) {
-    x.push_back(point.x());
-    y.push_back(point.y());
-    z.push_back(point.z());
-  }
+  for (const Eigen::Vector3f& point : points) Add(point);
+}
+
+void PointColumns::Add(const Eigen::Vector3f& point) {
+  x.push_back(point.x());
+  y.push_back(point.y());
+  z.push_back(point.z());
 }
 
 Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution)

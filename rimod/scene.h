@@ -12,6 +12,8 @@ namespace rimod {
 struct PointColumns {
   PointColumns() = default;
   explicit PointColumns(const std::vector<Eigen::Vector3f>& points);
+  void Add(const Eigen::Vector3f& point);
+  Eigen::Vector3f At(std::size_t i) const { return {x[i], y[i], z[i]}; }
   std::size_t size() const { return x.size(); }
   std::vector<float> x, y, z;
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "rimod/scoring.h"
 #include "tests/io/random_values.h"
@@ -15,9 +16,8 @@ constexpr double kDepth = 2.0, kEpsilon = 0.1;
 
 RankingParams Params() {
   RankingParams params;
-  params.see_through = 1.0;
-  params.outside = 1.0;
   params.first_points = 4;
+  params.first_min_known = 0.0;
   params.first_min_share = 0.25;
   return params;
 }
@@ -55,62 +55,93 @@ RankingModel ModelOf(const std::vector<Eigen::Vector3f>& points,
   model.views[0].direction = -Eigen::Vector3f::UnitX();
   model.views[0].surface.points = points;
   model.views[0].surface.normals.assign(points.size(), -Eigen::Vector3f::UnitX());
-  model.views[0].outside = outside;
+  model.views[0].points = PointColumns(points);
+  model.views[0].outside = PointColumns(outside);
   return model;
 }
 
-double Score(const RankingModel& model, const RankingParams& params = Params()) {
-  return RankingScore(Wall(), model, Eigen::Isometry3f::Identity(), kEpsilon, params);
+// What is found at the pose where the model's points lie; nothing for a hopeless one.
+std::optional<RankingFigures> Compare(const RankingModel& model,
+                                      const RankingParams& params = Params()) {
+  RankingFigures figures;
+  if (!CompareViewPoints(Wall(), model, Eigen::Isometry3f::Identity(), kEpsilon, params, &figures))
+    return std::nullopt;
+  return figures;
 }
 
-TEST(RankingScoreTest, PointsAtTheirPlaceCount) {
-  EXPECT_NEAR(Score(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth)})), 1.0, 0.01);
-  EXPECT_NEAR(Score(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 0.05)})), 0.75, 0.01);
+TEST(CompareViewPointsTest, PointsAtTheirPlaceCount) {
+  EXPECT_NEAR(Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth)}))->at_place, 1.0,
+              0.01);
+  const RankingFigures half =
+      *Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 0.05)}));
+  EXPECT_NEAR(half.at_place, 0.75, 0.01);
+  EXPECT_NEAR(half.hits, 1.0, 1e-6);
+  EXPECT_NEAR(half.agreeing, 1.0, 0.05);  // the wall's normals
 }
 
-TEST(RankingScoreTest, OccludedAndUnknownPointsNeitherHelpNorHarm) {
-  const double score = Score(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 1.0),
-                                      PointAt(-5, 9, kDepth), PointAt(5, 70, kDepth)}));
-  EXPECT_NEAR(score, 0.25, 0.01);
+TEST(CompareViewPointsTest, OccludedAndUnknownPointsAreNotKnown) {
+  const RankingFigures figures =
+      *Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 1.0), PointAt(-5, 9, kDepth),
+                        PointAt(5, 70, kDepth)}));
+  EXPECT_NEAR(figures.known, 0.25, 1e-6);
+  EXPECT_NEAR(figures.at_place, 0.25, 0.01);
+  EXPECT_EQ(figures.looked_through, 0.0f);
 }
 
-TEST(RankingScoreTest, LookedThroughPointsCost) {
-  const RankingModel model = ModelOf({PointAt(5, 5, kDepth), PointAt(5, 6, kDepth),
-                                      PointAt(5, 7, kDepth), PointAt(5, 9, kDepth - 0.5)});
-  EXPECT_NEAR(Score(model), 0.5, 0.01);
-  RankingParams params = Params();
-  params.see_through = 3.0;
-  EXPECT_NEAR(Score(model, params), 0.0, 0.01);
+TEST(CompareViewPointsTest, LookedThroughPointsAreCounted) {
   // A beam without return went through, too.
-  EXPECT_NEAR(Score(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 6, kDepth), PointAt(5, 7, kDepth),
-                             PointAt(0, 0, kDepth)})),
-              0.5, 0.01);
+  const RankingFigures figures =
+      *Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 6, kDepth), PointAt(5, 9, kDepth - 0.5),
+                        PointAt(0, 0, kDepth)}));
+  EXPECT_NEAR(figures.looked_through, 0.5, 1e-6);
+  EXPECT_NEAR(figures.known, 1.0, 1e-6);
 }
 
-TEST(RankingScoreTest, AnOutsideThatGoesOnCosts) {
+TEST(CompareViewPointsTest, TheOutsideGoesOnOrJumps) {
   const std::vector<Eigen::Vector3f> points = {PointAt(5, 5, kDepth)};
-  EXPECT_NEAR(Score(ModelOf(points, {PointAt(8, 8, kDepth - 0.5), PointAt(9, 9, kDepth)})), 0.5,
-              0.01);
-  EXPECT_NEAR(Score(ModelOf(points, {PointAt(8, 8, kDepth - 0.5), PointAt(0, 0, kDepth)})), 1.0,
-              0.01);
+  const RankingFigures figures =
+      *Compare(ModelOf(points, {PointAt(8, 8, kDepth - 0.5), PointAt(9, 9, kDepth),
+                                PointAt(0, 0, kDepth), PointAt(9, 9, kDepth + 1.0)}));
+  EXPECT_NEAR(figures.jumps, 0.5, 1e-6);
+  EXPECT_NEAR(figures.goes_on, 0.25, 1e-6);
 }
 
-TEST(RankingScoreTest, HopelessOnesAreGivenUp) {
+TEST(CompareViewPointsTest, HopelessOnesAreGivenUp) {
   std::vector<Eigen::Vector3f> points(4, PointAt(5, 5, kDepth - 1.0));  // none at its place
   points.insert(points.end(), 50, PointAt(5, 5, kDepth));
-  EXPECT_EQ(Score(ModelOf(points)), 0.0);
+  EXPECT_FALSE(Compare(ModelOf(points)));
   RankingParams patient = Params();
   patient.first_min_share = 0.0;
-  EXPECT_GT(Score(ModelOf(points), patient), 0.8);
+  EXPECT_GT(Compare(ModelOf(points), patient)->at_place, 0.8);
+  // Nearly all hidden: one point is no reason to go on.
+  std::vector<Eigen::Vector3f> hidden(3, PointAt(5, 5, kDepth + 1.0));
+  hidden.push_back(PointAt(5, 5, kDepth));
+  EXPECT_TRUE(Compare(ModelOf(hidden)));
+  RankingParams strict = Params();
+  strict.first_min_known = 0.5;
+  EXPECT_FALSE(Compare(ModelOf(hidden), strict));
 }
 
-TEST(RankingScoreTest, NothingToCompareIsZero) {
-  EXPECT_EQ(Score(RankingModel{}), 0.0);
-  EXPECT_EQ(Score(ModelOf({})), 0.0);
+TEST(CompareViewPointsTest, WhatIsNotOfTheViewStays) {
+  RankingFigures figures;
+  figures.votes = 7.0f;
+  figures.tilt = 0.3f;
+  figures.at_place = 100.0f;
+  ASSERT_TRUE(CompareViewPoints(Wall(), ModelOf({PointAt(5, 5, kDepth)}),
+                                Eigen::Isometry3f::Identity(), kEpsilon, Params(), &figures));
+  EXPECT_EQ(figures.votes, 7.0f);
+  EXPECT_EQ(figures.tilt, 0.3f);
+  EXPECT_NEAR(figures.at_place, 1.0, 0.01);
+}
+
+TEST(CompareViewPointsTest, NothingToCompareIsHopeless) {
+  EXPECT_FALSE(Compare(RankingModel{}));
+  EXPECT_FALSE(Compare(ModelOf({})));
   const Scene empty(RangeImage(), 0.05, Execution{});
-  EXPECT_EQ(RankingScore(empty, ModelOf({PointAt(5, 5, kDepth)}), Eigen::Isometry3f::Identity(),
-                         kEpsilon, Params()),
-            0.0);
+  RankingFigures figures;
+  EXPECT_TRUE(CompareViewPoints(empty, ModelOf({PointAt(5, 5, kDepth)}),
+                                Eigen::Isometry3f::Identity(), kEpsilon, Params(), &figures));
+  EXPECT_EQ(figures.known, 0.0f);
 }
 
 TEST(RankingModelTest, HoldsTheViewsPointsAndFindsTheNearestLikeScoring) {
@@ -130,7 +161,8 @@ TEST(RankingModelTest, HoldsTheViewsPointsAndFindsTheNearestLikeScoring) {
   for (int v = 0; v < 30; ++v) {
     EXPECT_EQ(ranking.views[v].surface.points, model.views[v].validation_points);
     EXPECT_EQ(ranking.views[v].surface.normals, model.views[v].validation_normals);
-    EXPECT_EQ(ranking.views[v].outside, model.views[v].outside_points);
+    EXPECT_EQ(ranking.views[v].points.At(0), model.views[v].validation_points[0]);
+    EXPECT_EQ(ranking.views[v].outside.At(0), model.views[v].outside_points[0]);
   }
   int equal = 0;
   for (int i = 0; i < 300; ++i) {

@@ -17,9 +17,11 @@ Evidence RandomEvidence(RandomValues* random) {
 
 RankingFigures RandomFigures(RandomValues* random) {
   RankingFigures figures;
-  for (auto* figure : {&figures.at_place, &figures.hits, &figures.looked_through, &figures.known,
-                       &figures.agreeing, &figures.goes_on, &figures.jumps})
-    *figure = static_cast<std::remove_pointer_t<decltype(figure)>>(random->Between(0.0, 1.0));
+  for (float* figure : {&figures.at_place, &figures.hits, &figures.looked_through, &figures.known,
+                        &figures.agreeing, &figures.goes_on, &figures.jumps})
+    *figure = static_cast<float>(random->Between(0.0, 1.0));
+  figures.pixels_across = static_cast<float>(random->Between(0.0, 300.0));
+  figures.votes = static_cast<float>(random->Between(1.0, 50.0));
   return figures;
 }
 
@@ -58,11 +60,13 @@ void ExpectUsable(const LogisticWeights& weights, std::size_t figures) {
 }
 
 TEST(LearntWeightsTest, FitTheFigures) {
-  ExpectUsable(kRankWeights, RankFigures(RankingFigures{}, 50.0).size());
+  ExpectUsable(kProposalWeights, RankFigures(RankingFigures{}).size());
+  ExpectUsable(kRankWeights, RankFigures(RankingFigures{}).size());
 }
 
 TEST(LearntTreesTest, FitTheFiguresAndEnd) {
-  const int figures = static_cast<int>(JudgementFigures(Evidence{}, RankingFigures{}).size());
+  const int figures =
+      static_cast<int>(JudgementFigures(Evidence{}, RankingFigures{}, FeatureSupport{}).size());
   const int size = static_cast<int>(kJudgementTrees.nodes.size());
   EXPECT_FALSE(kJudgementTrees.roots.empty());
   EXPECT_TRUE(std::isfinite(kJudgementTrees.bias));
@@ -81,11 +85,14 @@ TEST(LearntWeightsTest, GiveProbabilitiesForAnyFigures) {
   RandomValues random(1);
   for (int i = 0; i < 200; ++i) {
     const RankingFigures figures = i == 0 ? RankingFigures{} : RandomFigures(&random);
-    const double pixels = i == 1 ? 0.0 : random.Between(0.0, 300.0);
-    const double rank = Probability(kRankWeights, RankFigures(figures, pixels));
-    EXPECT_TRUE(rank >= 0.0 && rank <= 1.0) << rank;
+    for (const LogisticWeights& weights : {kProposalWeights, kRankWeights}) {
+      const double rank = Probability(weights, RankFigures(figures));
+      EXPECT_TRUE(rank >= 0.0 && rank <= 1.0) << rank;
+    }
     const Evidence evidence = i == 0 ? Evidence{} : RandomEvidence(&random);
-    const double judged = Probability(kJudgementTrees, JudgementFigures(evidence, figures));
+    const FeatureSupport support{i, i / 2};
+    const double judged =
+        Probability(kJudgementTrees, JudgementFigures(evidence, figures, support));
     EXPECT_TRUE(judged >= 0.0 && judged <= 1.0) << judged;
   }
 }

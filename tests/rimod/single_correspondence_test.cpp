@@ -83,5 +83,40 @@ TEST(PoseFromCorrespondenceTest, AFloorIsNoWall) {
       PoseFromCorrespondence(pair.scene, pair.model, pair.model_line_of_sight, kVertical, -1.0));
 }
 
+TEST(TiltedToNormalTest, LaysNormalAndPositionOntoTheScenes) {
+  RandomValues random(7);
+  int tilted_poses = 0;
+  for (int i = 0; i < 200; ++i) {
+    Feature scene, model;
+    scene.position = random.Vector(3.0).cast<float>();
+    model.position = random.Vector(0.5).cast<float>();
+    model.normal = random.Unit().cast<float>();
+    Eigen::Isometry3d upright = Eigen::Isometry3d::Identity();
+    upright.linear() =
+        Eigen::AngleAxisd(random.Between(-3.0, 3.0), Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Vector3d turned = upright.linear() * model.normal.cast<double>();
+    const double angle = random.Between(0.0, 0.6);
+    const Eigen::Vector3d axis = turned.unitOrthogonal();
+    scene.normal = (Eigen::AngleAxisd(angle, axis) * turned).cast<float>();
+    const std::optional<Eigen::Isometry3d> tilted =
+        TiltedToNormal(upright, scene, model, 0.15, 0.5);
+    if (!tilted) {
+      EXPECT_FALSE(angle > 0.151 && angle < 0.499) << angle;
+      continue;
+    }
+    ++tilted_poses;
+    EXPECT_GT(angle, 0.149);
+    EXPECT_LT(angle, 0.501);
+    EXPECT_LT((*tilted * model.position.cast<double>() - scene.position.cast<double>()).norm(),
+              1e-5);
+    EXPECT_LT((tilted->linear() * model.normal.cast<double>() - scene.normal.cast<double>()).norm(),
+              1e-5);
+    // The shortest way.
+    EXPECT_NEAR(Eigen::AngleAxisd(tilted->linear() * upright.linear().transpose()).angle(), angle,
+                1e-5);
+  }
+  EXPECT_GT(tilted_poses, 50);
+}
+
 }  // namespace
 }  // namespace rimod
