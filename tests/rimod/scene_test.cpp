@@ -77,6 +77,36 @@ TEST(SceneTest, WhatIsNoPointIsOutside) {
   EXPECT_EQ(empty.PixelOf(1.0f, 0.0f, 0.0f), -1);
 }
 
+TEST(SceneTest, ManyPointsFallWhereEachOfThemFalls) {
+  RandomValues random(5);
+  SphericalGrid grid;
+  grid.resolution = 0.01;
+  grid.width = 300;
+  grid.height = 120;
+  grid.azimuth_left = 1.5;
+  grid.elevation_top = 0.6;
+  const Scene scene(RangeImage(grid, Eigen::Isometry3d::Identity()), 0.1, Execution{});
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 1003; ++i) points.push_back(random.Vector(3.0).cast<float>());
+  points[7].setConstant(std::numeric_limits<float>::quiet_NaN());
+  points[8].setZero();
+  const Eigen::Isometry3f pose = random.Pose().cast<float>();
+  ProjectedPoints projected;
+  scene.Project(PointColumns(points), pose, 5, points.size(), &projected);
+  ASSERT_EQ(projected.pixels.size(), points.size());
+  int differing = 0, inside = 0;
+  for (std::size_t i = 5; i < points.size(); ++i) {
+    const Eigen::Vector3f p = pose * points[i];
+    differing += projected.pixels[i] != scene.PixelOf(p);  // but for the last bit at a pixel's edge
+    inside += projected.pixels[i] >= 0;
+    if (i == 7) continue;
+    EXPECT_NEAR(projected.ranges[i], p.norm(), 1e-5f * p.norm());
+  }
+  EXPECT_LE(differing, 3);
+  EXPECT_GT(inside, 50);
+  EXPECT_EQ(projected.pixels[7], -1);
+}
+
 TEST(SceneTest, NormalsAreThoseOfTheSurfaces) {
   World world;
   const Eigen::Vector3d wall_normal = Eigen::Vector3d(-1, 0.3, 0.2).normalized();
