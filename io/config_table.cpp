@@ -33,6 +33,8 @@ Keys ScanKeys(PipelineParams* p) {
       {"sweep", "max_lines", &s.max_lines, "a longer sweep is ended as incomplete; >= 1"},
 
       {"range_image", "resolution_deg", DegreesOf{&r.resolution}, "of a pixel (paper: 0.4); 0.06 .. 5.7"},
+      {"range_image", "max_resolution_deg", DegreesOf{&r.max_resolution}, "sparser scans get larger pixels, up to this; 0 = never .. 5.7"},
+      {"range_image", "min_filled", &r.min_filled, ".. the smallest of which this share is observed beside measured ones; 0 .. 1"},
       {"range_image", "min_range", &r.min_range, "m, nearer points belong to the sensor's carrier; >= 0"},
   };
 }

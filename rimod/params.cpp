@@ -79,6 +79,7 @@ PipelineParams PaperParams() {
 PipelineParams OwnParams() {
   PipelineParams params;
   params.method = Method::kDefault;
+  params.range_image.max_resolution = 0.035;
   params.interest_points.measure = InterestMeasure::kSurfaceChange;
   params.interest_points.max_points = 2000;
   params.interest_points.suppression_radius = 0.045;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "rimod/check.h"
+
 namespace rimod {
 namespace {
 
@@ -62,6 +64,20 @@ SphericalGrid GridFor(const Bounds& bounds, double resolution) {
   grid.width = static_cast<int>(std::floor(last.column)) + 1;
   grid.height = static_cast<int>(std::floor(last.row)) + 1;
   return grid;
+}
+
+// The share of the pixels right of and below measured ones that were observed.
+double FilledShare(const RangeImage& image) {
+  std::int64_t beside = 0, observed = 0;
+  for (int row = 0; row + 1 < image.height(); ++row) {
+    for (int column = 0; column + 1 < image.width(); ++column) {
+      if (!image.measured(row, column)) continue;
+      beside += 2;
+      observed += image.pixel(row, column + 1) != Pixel::kNeverObserved;
+      observed += image.pixel(row + 1, column) != Pixel::kNeverObserved;
+    }
+  }
+  return beside > 0 ? static_cast<double>(observed) / static_cast<double>(beside) : 1.0;
 }
 
 }  // namespace
@@ -171,6 +187,8 @@ void RangeImageParams::Validate() const {
     throw std::invalid_argument("range_image resolution is " + std::to_string(resolution) +
                                 " rad, not within 0.001 .. 0.1");
   }
+  CheckWithin("range_image max_resolution", max_resolution, 0.0, 0.1);
+  CheckWithin("range_image min_filled", min_filled, 0.0, 1.0);
   if (!(min_range >= 0.0 && std::isfinite(min_range))) {
     throw std::invalid_argument("range_image min_range is " + std::to_string(min_range));
   }
@@ -200,10 +218,14 @@ RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params) {
     bounds.Include(no_returns.back());
   }
 
-  RangeImage image(GridFor(bounds, params.resolution), scan.T_local_sensor);
-  image.AddBeams(directions, ranges);
-  for (const Direction& direction : no_returns) image.AddNoReturn(direction);
-  return image;
+  constexpr double kStep = 1.25;  // from one resolution to the next
+  for (double resolution = params.resolution;; resolution *= kStep) {
+    RangeImage image(GridFor(bounds, resolution), scan.T_local_sensor);
+    image.AddBeams(directions, ranges);
+    for (const Direction& direction : no_returns) image.AddNoReturn(direction);
+    const bool coarsest = resolution * kStep > params.max_resolution;
+    if (coarsest || FilledShare(image) >= params.min_filled) return image;
+  }
 }
 
 }  // namespace rimod

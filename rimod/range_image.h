@@ -108,6 +108,10 @@ Direction PixelDirection(const SphericalGrid& grid, double row, double column);
 struct RangeImageParams {
   double resolution =
       0.00698131700797732;  // rad per pixel (0.4 deg, paper section V); 0.001 .. 0.1
+  // rad; scans too sparse for that get larger pixels, up to this: the smallest of which min_filled
+  // is observed. 0 .. 0.1, up to resolution: never
+  double max_resolution = 0.0;
+  double min_filled = 0.7;  // of the pixels beside measured ones; 0 .. 1
   double min_range = 0.1;   // m, nearer points belong to the sensor's carrier; >= 0
   void Validate() const;
 };

@@ -37,6 +37,8 @@ struct CountField {
 const std::vector<RealField>& RealFields() {
   static const std::vector<RealField> fields = {
       REAL(range_image, resolution, 0.0, 0.0009, 0.11),
+      REAL(range_image, max_resolution, -0.01, 0.11),
+      REAL(range_image, min_filled, -0.1, 1.1),
       REAL(range_image, min_range, -0.01),
       REAL(interest_points, harris_k, -0.01, 0.26),
       REAL(interest_points, max_depth_jump, 0.0, -1.0),

@@ -305,6 +305,41 @@ TEST(MakeRangeImageTest, SeesARigidlyMovedScanAlike) {
   EXPECT_GE(equal, 490);  // some fall into the neighbouring pixel by rounding
 }
 
+// A wall 3 m ahead measured every spacing (rad), slightly unevenly.
+Scan WallOfBeams(double spacing) {
+  RandomValues random(9);
+  Scan scan;
+  for (double azimuth = -0.5; azimuth < 0.5; azimuth += spacing) {
+    for (double elevation = -0.4; elevation < 0.4; elevation += spacing) {
+      const Direction beam{azimuth + random.Between(-0.1, 0.1) * spacing,
+                           elevation + random.Between(-0.1, 0.1) * spacing};
+      scan.points.push_back((3.0 * UnitVector(beam)).cast<float>());
+    }
+  }
+  return scan;
+}
+
+TEST(MakeRangeImageTest, SparseScansGetLargerPixels) {
+  RangeImageParams params = Params(0.01);
+  params.min_filled = 0.7;
+  for (const double spacing : {0.003, 0.005, 0.007}) {
+    params.max_resolution = 0.05;
+    EXPECT_EQ(MakeRangeImage(WallOfBeams(spacing), params).grid().resolution, 0.01) << spacing;
+  }
+  for (const double spacing : {0.015, 0.02, 0.03}) {
+    params.max_resolution = 0.05;
+    const RangeImage image = MakeRangeImage(WallOfBeams(spacing), params);
+    EXPECT_GT(image.grid().resolution, 0.7 * spacing);
+    EXPECT_LT(image.grid().resolution, 1.6 * spacing);
+    EXPECT_GT(image.CountMeasured(), 0.6 * image.grid().size());
+    params.max_resolution = 0.0;  // never
+    EXPECT_EQ(MakeRangeImage(WallOfBeams(spacing), params).grid().resolution, 0.01);
+  }
+  params.max_resolution = 0.014;  // no larger, however sparse
+  EXPECT_LE(MakeRangeImage(WallOfBeams(0.05), params).grid().resolution, 0.014);
+  EXPECT_EQ(MakeRangeImage(Scan{}, params).grid().size(), 0);
+}
+
 TEST(RangeImageParamsTest, RejectsWhatIsOutOfRange) {
   for (const double resolution : {0.0, -1.0, 0.2, std::nan("")})
     EXPECT_TRUE(Complains([&] { Params(resolution).Validate(); }, {"resolution"}));
