@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
-#include <unordered_map>
 
+#include "rimod/distinct_poses.h"
+#include "rimod/feature_support.h"
 #include "rimod/judgement.h"
 #include "rimod/matching.h"
 #include "rimod/refinement.h"
@@ -85,71 +85,13 @@ void ScoreHypotheses(const Scene& scene, const ModelDatabase& database, const Ra
   });
 }
 
-// Hypotheses that were kept, found again by model and place.
-class KeptPoses {
- public:
-  KeptPoses(double same_distance, double same_angle)
-      : distance_(static_cast<float>(same_distance)),
-        min_trace_(1.0f + 2.0f * static_cast<float>(std::cos(same_angle))) {}
-
-  // Index of a kept one of the same pose, -1: there is none.
-  int Find(const Hypothesis& hypothesis, const Eigen::Vector3f& centre) const {
-    // Cells are two distances wide: a ball reaches into eight of them at most.
-    const Eigen::Vector3i low = CellOf(centre.array() - distance_);
-    const Eigen::Vector3i high = CellOf(centre.array() + distance_);
-    int found = -1;
-    for (int x = low.x(); x <= high.x(); ++x) {
-      for (int y = low.y(); y <= high.y(); ++y) {
-        for (int z = low.z(); z <= high.z(); ++z) {
-          const auto cell = cells_.find(Key(hypothesis.model, {x, y, z}));
-          if (cell == cells_.end()) continue;
-          for (const int k : cell->second)
-            if ((found < 0 || k < found) && Same(poses_[k], {hypothesis.T_sensor_object, centre}))
-              found = k;
-        }
-      }
-    }
-    return found;
-  }
-
-  void Add(const Hypothesis& hypothesis, const Eigen::Vector3f& centre) {
-    cells_[Key(hypothesis.model, CellOf(centre))].push_back(static_cast<int>(poses_.size()));
-    poses_.push_back({hypothesis.T_sensor_object, centre});
-  }
-
- private:
-  struct Pose {
-    Eigen::Isometry3f T_sensor_object;
-    Eigen::Vector3f centre;
-  };
-
-  bool Same(const Pose& a, const Pose& b) const {
-    return (a.centre - b.centre).squaredNorm() < distance_ * distance_ &&
-           a.T_sensor_object.linear().cwiseProduct(b.T_sensor_object.linear()).sum() > min_trace_;
-  }
-  Eigen::Vector3i CellOf(const Eigen::Vector3f& p) const {
-    constexpr float kFar = 1e6f;  // cells; keeps the conversion defined
-    return (p / (2.0f * distance_)).array().floor().max(-kFar).min(kFar).cast<int>();
-  }
-  static std::uint64_t Key(int model, const Eigen::Vector3i& cell) {
-    std::uint64_t key = static_cast<std::uint64_t>(model);
-    for (int d = 0; d < 3; ++d)
-      key = key * 0x9E3779B97F4A7C15u + static_cast<std::uint32_t>(cell[d]);
-    return key;
-  }
-
-  float distance_, min_trace_;
-  std::vector<Pose> poses_;
-  std::unordered_map<std::uint64_t, std::vector<int>> cells_;
-};
-
 // Best first the hypotheses whose pose differs from all better ones of their model; the others give
 // these their votes. Looks at the max_scanned best.
 std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses,
                                        const ModelDatabase& database, int max_scanned,
                                        const RankingParams& params) {
   std::vector<Hypothesis> different;
-  KeptPoses kept(params.same_distance, params.same_angle);
+  DistinctPoses distinct(params.same_distance, params.same_angle);
   int scanned = 0;
   for (const int i : OrderByScore(hypotheses)) {
     const Hypothesis& hypothesis = hypotheses[i];
@@ -157,13 +99,12 @@ std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses
     const Eigen::Vector3f centre =
         hypothesis.T_sensor_object * database.ranking_models()[hypothesis.model].centre;
     if (!centre.allFinite()) continue;
-    const int same = kept.Find(hypothesis, centre);
-    if (same >= 0) {
+    const int same = distinct.FindOrAdd(hypothesis.model, hypothesis.T_sensor_object, centre);
+    if (same < static_cast<int>(different.size())) {
       different[same].figures.votes += hypothesis.figures.votes;
-      continue;
+    } else {
+      different.push_back(hypothesis);
     }
-    kept.Add(hypothesis, centre);
-    different.push_back(hypothesis);
   }
   return different;
 }
@@ -196,46 +137,6 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
     if (SetFigures(scene, database, params.ranking.fine_epsilon, params.ranking, &hypothesis))
       hypothesis.score = Probability(kRankWeights, RankFigures(hypothesis.figures));
   });
-}
-
-// Where each feature's matches begin, and the end of the last one's.
-std::vector<std::size_t> FirstMatches(const FeatureSet& features,
-                                      const std::vector<Correspondence>& matches) {
-  std::vector<std::size_t> first(features.features.size() + 1, matches.size());
-  for (std::size_t i = matches.size(); i-- > 0;) first[matches[i].scene_feature] = i;
-  for (std::size_t i = features.features.size(); i-- > 0;)
-    first[i] = std::min(first[i], first[i + 1]);
-  return first;
-}
-
-FeatureSupport Support(const FeatureSet& features, const std::vector<Correspondence>& matches,
-                       const std::vector<std::size_t>& first_matches, const ModelDatabase& database,
-                       const Candidate& candidate) {
-  constexpr float kSamePlace = 0.06f, kSameNormal = 0.8f;  // m, cosine
-  const ObjectModel& model = database.models()[candidate.model];
-  const Eigen::Isometry3f T_object_sensor = candidate.T_sensor_object.inverse().cast<float>();
-  const Eigen::Array3f low = model.box_min.cast<float>().array() - 0.5f * kSamePlace;
-  const Eigen::Array3f high = model.box_max.cast<float>().array() + 0.5f * kSamePlace;
-  const auto supports = [&](const Correspondence& match, const Eigen::Vector3f& position,
-                            const Eigen::Vector3f& normal) {
-    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
-    if (origin.model != candidate.model) return false;
-    const Feature& model_feature = *database.features(origin.model)[origin.feature];
-    return (model_feature.position - position).squaredNorm() < kSamePlace * kSamePlace &&
-           model_feature.normal.dot(normal) > kSameNormal;
-  };
-  FeatureSupport support;
-  for (std::size_t i = 0; i < features.features.size(); ++i) {
-    const Eigen::Vector3f position = T_object_sensor * features.features[i].position;
-    if ((position.array() < low).any() || (position.array() > high).any()) continue;
-    ++support.inside;
-    const Eigen::Vector3f normal = T_object_sensor.linear() * features.features[i].normal;
-    support.matching +=
-        std::any_of(matches.begin() + static_cast<std::ptrdiff_t>(first_matches[i]),
-                    matches.begin() + static_cast<std::ptrdiff_t>(first_matches[i + 1]),
-                    [&](const Correspondence& match) { return supports(match, position, normal); });
-  }
-  return support;
 }
 
 // The share of a candidate's pixels that are explained already.
@@ -291,7 +192,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
                                              const Execution& execution) {
   const StageScope stage(execution, "validation");
   const RefinementSchedule schedule = params.refinement.BeforeJudging();
-  const std::vector<std::size_t> first_matches = FirstMatches(features, matches);
+  const FeatureSupportCounter support(features, matches, database);
   std::vector<JudgedCandidate> judged(ranked.size());
   execution.parallel_for(ranked.size(), [&](std::size_t i) {
     JudgedCandidate& result = judged[i];
@@ -302,7 +203,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
         RefinePose(scene, model.sample(), ranked[i].T_sensor_object, schedule).cast<double>();
     result.evidence =
         GatherEvidence(scene, model, result.candidate.T_sensor_object, params.evidence);
-    result.support = Support(features, matches, first_matches, database, result.candidate);
+    result.support = support.Count(result.candidate);
     result.candidate.score = Probability(
         kJudgementTrees, JudgementFigures(result.evidence, result.figures, result.support));
   });

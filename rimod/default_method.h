@@ -4,6 +4,7 @@
 
 #include "rimod/candidates.h"
 #include "rimod/execution.h"
+#include "rimod/feature_support.h"
 #include "rimod/features.h"
 #include "rimod/model_database.h"
 #include "rimod/params.h"

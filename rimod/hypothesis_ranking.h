@@ -71,12 +71,6 @@ struct RankingFigures {
   float votes = 1.0f;                // hypotheses of the same pose, with itself
 };
 
-// How many of the scene's features a pose explains.
-struct FeatureSupport {
-  int inside = 0;    // lie in the object's box
-  int matching = 0;  // .. and have a correspondence to the model's feature at that very place
-};
-
 // Sets the figures of the view's points, leaves the others. False for hopeless poses: too few of
 // the first points at their place.
 bool CompareViewPoints(const Scene& scene, const RankingModel& model,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "rimod/evidence.h"
+#include "rimod/feature_support.h"
 #include "rimod/hypothesis_ranking.h"
 
 namespace rimod {
