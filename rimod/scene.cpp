@@ -98,14 +98,6 @@ Scene::Scene(const RangeImage& image, double normal_radius, const Execution& exe
   });
 }
 
-int Scene::PixelOf(float x, float y, float z) const {
-  const float column = (azimuth_left_ - FastAtan2(y, x)) * pixels_per_radian_;
-  const float row = (elevation_top_ - FastAtan2(z, std::sqrt(x * x + y * y))) * pixels_per_radian_;
-  if (!(row >= 0.0f && column >= 0.0f)) return -1;
-  const int r = static_cast<int>(row), c = static_cast<int>(column);
-  return r < height_ && c < width_ ? r * width_ + c : -1;
-}
-
 void Scene::Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
                     std::size_t begin, std::size_t end, ProjectedPoints* projected) const {
   projected->pixels.resize(std::max(projected->pixels.size(), end));

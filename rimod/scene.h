@@ -33,11 +33,8 @@ class Scene {
 
   const RangeImage& image() const { return image_; }
   const SphericalGrid& grid() const { return image_.grid(); }
-  // Index of the pixel that a point (level sensor frame) falls into, -1 when outside the image.
-  int PixelOf(float x, float y, float z) const;
-  int PixelOf(const Eigen::Vector3f& p) const { return PixelOf(p.x(), p.y(), p.z()); }
-
-  // The same for the points [begin, end) of a piece of surface at a pose; the others' entries stay.
+  // Where the points [begin, end) of a piece of surface at a pose (level sensor frame) fall; the
+  // others' entries stay.
   void Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
                std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
 
