@@ -32,7 +32,7 @@ std::optional<Eigen::Isometry3d> TiltedToNormal(const Eigen::Isometry3d& T_senso
   const Eigen::Vector3d wanted = scene.normal.cast<double>();
   const Eigen::Vector3d normal = T_sensor_object.linear() * model.normal.cast<double>();
   const double angle = std::acos(std::clamp(normal.dot(wanted), -1.0, 1.0));
-  if (angle < min_angle || angle > max_angle) return std::nullopt;
+  if (!(angle >= min_angle && angle <= max_angle)) return std::nullopt;
   Eigen::Isometry3d tilted = T_sensor_object;
   tilted.linear() = Eigen::Quaterniond::FromTwoVectors(normal, wanted) * T_sensor_object.linear();
   tilted.translation() =
