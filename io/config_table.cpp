@@ -172,9 +172,6 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"refinement", "fine_gate", &f.fine_gate, "m, .. and in the end; > 0"},
       {"refinement", "judged_first_gate", &f.judged_first_gate, "m, the same before judging, at first ..; > 0"},
       {"refinement", "judged_last_gate", &f.judged_last_gate, "m, .. and in the end; > 0"},
-      {"refinement", "final_iterations", &f.final_iterations, "of what is found, with all points; 0 .. 100"},
-      {"refinement", "final_gate", &f.final_gate, "m, farther pairs are left out then; > 0"},
-      {"refinement", "final_damping", &f.final_damping, "instead of the others; > 0"},
       {"refinement", "damping", &f.damping, "of the points' number, keeps what they do not determine; > 0"},
       {"refinement", "tilt_damping", &f.tilt_damping, "the same for the tilt from the vertical; > 0"},
 

@@ -244,23 +244,6 @@ std::vector<Candidate> ChooseCandidates(const Scene& scene,
   return chosen;
 }
 
-namespace {
-
-void RefineDetections(const Scene& scene, const ModelDatabase& database,
-                      const PipelineParams& params, const Execution& execution,
-                      CandidateList* detections) {
-  const StageScope stage(execution, "final_refinement");
-  execution.parallel_for(detections->size(), [&](std::size_t i) {
-    Candidate& detection = (*detections)[i];
-    detection.T_sensor_object =
-        RefinePose(scene, database.judged_models()[detection.model].sample(),
-                   detection.T_sensor_object.cast<float>(), params.refinement.OfDetections())
-            .cast<double>();
-  });
-}
-
-}  // namespace
-
 StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
                                 const ModelDatabase& database, const PipelineParams& params,
                                 const Execution& execution) {
@@ -277,7 +260,6 @@ StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& featu
   const std::vector<JudgedCandidate> judged =
       JudgeCandidates(scene, features, matches, ranked, database, params, execution);
   found.validated = ChooseCandidates(scene, judged, database, params, execution);
-  RefineDetections(scene, database, params, execution, &found.validated);
   for (const JudgedCandidate& candidate : judged) found.scored.push_back(candidate.candidate);
   return found;
 }

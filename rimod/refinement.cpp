@@ -110,9 +110,6 @@ void RefinementParams::Validate() const {
   CheckWithin("refinement fine_gate", fine_gate, 1e-3, 10.0);
   CheckWithin("refinement judged_first_gate", judged_first_gate, 1e-3, 10.0);
   CheckWithin("refinement judged_last_gate", judged_last_gate, 1e-3, 10.0);
-  CheckWithin("refinement final_iterations", final_iterations, 0, 100);
-  CheckWithin("refinement final_gate", final_gate, 1e-3, 10.0);
-  CheckWithin("refinement final_damping", final_damping, 1e-6, 10.0);
   CheckWithin("refinement damping", damping, 1e-6, 10.0);
   CheckWithin("refinement tilt_damping", tilt_damping, 1e-6, 1e6);
 }
@@ -123,10 +120,6 @@ RefinementSchedule RefinementParams::BeforeRanking() const {
 
 RefinementSchedule RefinementParams::BeforeJudging() const {
   return {fine_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
-}
-
-RefinementSchedule RefinementParams::OfDetections() const {
-  return {final_iterations, final_gate, final_gate, final_damping, final_damping};
 }
 
 Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,

@@ -29,15 +29,11 @@ struct RefinementParams {
   double fine_gate = 0.05;          // m, .. and in the end; > 0
   double judged_first_gate = 0.08;  // m, the same for the refinement before judging
   double judged_last_gate = 0.03;   // m
-  int final_iterations = 10;        // of what is found, with all points; 0 .. 100
-  double final_gate = 0.03;         // m, farther pairs are left out; > 0
-  double final_damping = 0.005;     // instead of the others; > 0
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
   void Validate() const;
   RefinementSchedule BeforeRanking() const;
   RefinementSchedule BeforeJudging() const;
-  RefinementSchedule OfDetections() const;
 };
 
 // Projective point-to-plane ICP: each surface point facing the sensor is paired with the nearest

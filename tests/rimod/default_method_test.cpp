@@ -220,9 +220,7 @@ TEST(FindByEvidenceTest, TellsWhatItFoundStageByStage) {
   EXPECT_LE(found.validated.size(), found.scored.size());
   for (const Candidate& candidate : found.validated) {
     EXPECT_TRUE(std::any_of(found.scored.begin(), found.scored.end(), [&](const Candidate& s) {
-      // The last refinement moves it a little.
-      return s.score == candidate.score &&
-             PosesNear(s.T_sensor_object, candidate.T_sensor_object, 0.02, 0.05);
+      return s.T_sensor_object.matrix() == candidate.T_sensor_object.matrix();
     }));
   }
 }

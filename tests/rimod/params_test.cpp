@@ -98,8 +98,6 @@ const std::vector<RealField>& RealFields() {
       REAL(refinement, fine_gate, 0.0, -0.1),
       REAL(refinement, judged_first_gate, 0.0, -0.1),
       REAL(refinement, judged_last_gate, 0.0, -0.1),
-      REAL(refinement, final_gate, 0.0, -0.1),
-      REAL(refinement, final_damping, 0.0, -0.1),
       REAL(refinement, damping, 0.0, -0.1),
       REAL(refinement, tilt_damping, 0.0, -0.1),
       REAL(evidence, normal_radius, 0.0, -0.1),
@@ -145,7 +143,6 @@ const std::vector<CountField>& CountFields() {
       COUNT(ranking, max_judged, 0),
       COUNT(refinement, coarse_iterations, -1, 101),
       COUNT(refinement, fine_iterations, -1, 101),
-      COUNT(refinement, final_iterations, -1, 101),
       COUNT(ranking, max_scanned, 0),
   };
   return fields;
