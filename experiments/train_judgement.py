@@ -124,8 +124,8 @@ class Trees:
     def __init__(self, X, y, weight):
         from sklearn.ensemble import HistGradientBoostingClassifier
         self.fitted = HistGradientBoostingClassifier(
-            max_iter=200, learning_rate=0.05, max_leaf_nodes=10, l2_regularization=3.0,
-            min_samples_leaf=20, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
+            max_iter=200, learning_rate=0.05, max_leaf_nodes=16, l2_regularization=3.0,
+            min_samples_leaf=40, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
         self.slope, self.shift = 1.0, 0.0  # of the logit, after calibration
 
     def predict(self, X):

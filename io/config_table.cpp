@@ -51,6 +51,8 @@ Keys FeatureKeys(PipelineParams* p) {
       {"interest_points", "bend_step", &i.bend_step, "m, bends are measured over this distance (surface_change); > 0"},
       {"interest_points", "min_strength", &i.min_strength, "weaker points are left out; >= 0"},
       {"interest_points", "suppression_radius", &i.suppression_radius, "m, only the strongest point within is kept; >= 0"},
+      {"interest_points", "cube_side", &i.cube_side, "m, of the cubes of space in which points are counted; > 0"},
+      {"interest_points", "max_points_a_cube", &i.max_points_a_cube, "the strongest in a cube are kept; 0 = all"},
       {"interest_points", "max_range", &i.max_range, "m, farther points are left out; > 0"},
 
       {"range_patch", "resolution", &d.resolution, "cells a side (paper: 8); 2 .. 16"},
@@ -181,6 +183,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"evidence", "max_tolerance", &e.max_tolerance, "m, on surfaces seen at a flat angle; >= depth_tolerance"},
       {"evidence", "slight_difference", &e.slight_difference, "m, depth differences up to this are slight; > max_tolerance"},
       {"evidence", "silhouette_gap", &e.silhouette_gap, "m, how far beside the silhouette is looked; > 0"},
+      {"evidence", "rim_inset", &e.rim_inset, "m, how far inside it its rim is looked at; > 0"},
       {"evidence", "continue_tolerance", &e.continue_tolerance, "m, a surface going on past the silhouette; > 0"},
       {"evidence", "support_height", &e.support_height, "m, around the object's bottom; > 0"},
 

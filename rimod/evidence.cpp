@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "rimod/check.h"
+#include "rimod/rim_fit.h"
 #include "rimod/surface_rendering.h"
 
 namespace rimod {
@@ -67,13 +68,17 @@ class Comparison {
     pixel_size_ = scene.grid().resolution * distance_;
     surface_ = &model.Thinned(pixel_size_);
     rendered_ = RenderModel(*surface_, T_sensor_object, scene.grid());
+    fits_.width = rendered_.width;
+    fits_.height = rendered_.height;
+    fits_.pixels.assign(static_cast<std::size_t>(fits_.width) * fits_.height,
+                        PixelFit::kNotRendered);
   }
 
   Evidence Gather() {
     for (int row = 0; row < rendered_.height; ++row) {
       for (int column = 0; column < rendered_.width; ++column) {
         if (rendered_.point(row, column) < 0) continue;
-        ComparePixel(row, column);
+        fits_.pixels[row * fits_.width + column] = ComparePixel(row, column);
       }
     }
     Evidence evidence;
@@ -101,14 +106,14 @@ class Comparison {
     return false;
   }
 
-  void ComparePixel(int row, int column) {
+  PixelFit ComparePixel(int row, int column) {
     const int pixel = ScenePixel(row, column);
     const float measured = scene_.range(pixel);
-    if (measured == 0.0f) return;
+    if (measured == 0.0f) return PixelFit::kUnknown;
     ++counts_.rendered;
     if (std::isinf(measured)) {
       ++counts_.no_return;
-      return;
+      return PixelFit::kUnknown;
     }
     const int surfel = rendered_.point(row, column);
     const Eigen::Vector3f normal = T_sensor_object_.linear() * surface_->normals[surfel];
@@ -146,7 +151,7 @@ class Comparison {
       }
       counts_.normal_products += normal * normal.transpose();
       CompareSilhouette(row, column, range);
-      return;
+      return PixelFit::kFits;
     }
     const float slight = static_cast<float>(params_.slight_difference);
     if (NeighbourMatches(row, column, range, tolerance)) {
@@ -159,6 +164,7 @@ class Comparison {
       ++counts_.occluded;
       if (behind > -slight) ++counts_.slightly_front;
     }
+    return behind > slight ? PixelFit::kSeenThrough : PixelFit::kUnknown;
   }
 
   // Where the model ends beside a matched pixel: does the scene end, too?
@@ -285,6 +291,7 @@ class Comparison {
     v[kTurnedNormals] = Share(counts_.turned, counts_.cosines);
     v[kSlightlyInFront] = counts_.slightly_front / n;
     v[kSlightlyBehind] = counts_.slightly_behind / n;
+    FillRim(values);
     v[kWorstSide] = 1.0;
     for (std::size_t i = 0; i < counts_.side_jump.size(); ++i) {
       constexpr int kMinPixels = 2;
@@ -293,6 +300,15 @@ class Comparison {
       v[kWorstSide] = std::min(v[kWorstSide], Share(counts_.side_jump[i], known));
       v[kKnownSides] += 0.25;
     }
+  }
+
+  void FillRim(std::array<double, kEvidenceCount>* values) const {
+    const int inset = std::max(1, static_cast<int>(std::lround(params_.rim_inset / pixel_size_)));
+    const RimFit rim = FitOfRim(fits_, inset);
+    (*values)[kRimWorst] = rim.worst;
+    (*values)[kRimSecondWorst] = rim.second_worst;
+    (*values)[kRimMean] = rim.mean;
+    (*values)[kThroughRegion] = Share(LargestSeenThroughRegion(fits_), counts_.rendered);
   }
 
   const Scene& scene_;
@@ -304,6 +320,7 @@ class Comparison {
   double distance_ = 0.0;    // m, to the object's centre
   double pixel_size_ = 0.0;  // m, at that distance
   RenderedModel rendered_;
+  FitImage fits_;  // of the rendered pixels
   Counts counts_;
   int support_points_ = 0, box_points_ = 0, unexplained_points_ = 0;
   std::vector<int> explained_;
@@ -317,6 +334,7 @@ void EvidenceParams::Validate() const {
   CheckWithin("evidence slope_tolerance", slope_tolerance, 0.0, 10.0);
   CheckWithin("evidence max_tolerance", max_tolerance, depth_tolerance, 10.0);
   CheckWithin("evidence silhouette_gap", silhouette_gap, 1e-3, 1.0);
+  CheckWithin("evidence rim_inset", rim_inset, 1e-3, 1.0);
   CheckWithin("evidence continue_tolerance", continue_tolerance, 1e-3, 10.0);
   CheckWithin("evidence slight_difference", slight_difference, max_tolerance, 10.0);
   CheckWithin("evidence support_height", support_height, 1e-3, 1.0);

@@ -21,6 +21,7 @@ struct EvidenceParams {
   double slope_tolerance = 0.25;  // of a pixel's size times the surface's slope, added to it; >= 0
   double max_tolerance = 0.10;    // m, on surfaces seen at a flat angle; >= depth_tolerance
   double silhouette_gap = 0.03;   // m, how far beside the silhouette is looked; > 0
+  double rim_inset = 0.02;        // m, how far inside it its rim is looked at; > 0
   double continue_tolerance = 0.06;  // m, a surface going on past the silhouette; > 0
   double slight_difference = 0.12;  // m, depth differences up to this are "slight"; > max_tolerance
   double support_height = 0.04;     // m, around the object's bottom; > 0
@@ -59,6 +60,10 @@ enum EvidenceIndex {
   kClosely,          // share of matched pixels whose depth differs by less than a quarter tolerance
   kSpread,           // standard deviation of the signed difference of matched pixels, m
   kTurnedNormals,    // share of matched pixels with normals more than 45 degrees apart
+  kRimWorst,         // share of the rim seen through on the worst of its four sides (rim_fit) ..
+  kRimSecondWorst,   // .. on the second worst ..
+  kRimMean,          // .. on all
+  kThroughRegion,    // largest connected region seen through, share of the rendered pixels
   kEvidenceCount
 };
 

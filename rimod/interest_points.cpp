@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
 
@@ -80,8 +81,16 @@ float Bend(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vect
   return norms > 0.0f ? 0.5f * (1.0f - first.dot(second) / norms) : 0.0f;
 }
 
-// Strongest bend of the surface through a pixel over its four lines; 1 on the near side of a jump,
-// 0 on its far side.
+// Whether the surface ends between a range and the next one on a line; on a slope (a floor far
+// away) they grow further as they did from the one before, 0 when that is not measured.
+bool FallsOff(float before, float range, float after, float jump) {
+  constexpr float kSlopesGrow = 1.3f;
+  const float rise = before > 0.0f ? std::max(range - before, 0.0f) : 0.0f;
+  return after > range + jump + kSlopesGrow * rise;
+}
+
+// Strongest bend of the surface through a pixel over its four lines; 1 on the near side of a jump.
+// Lines on which something nearer stands say nothing: the surface goes on behind it.
 float SurfaceChangeAt(const RangeImage& image, int row, int column,
                       const InterestPointParams& params) {
   const float range = image.range(row, column);
@@ -98,12 +107,13 @@ float SurfaceChangeAt(const RangeImage& image, int row, int column,
       continue;
     const float before = image.range(row - dr, column - dc);
     const float after = image.range(row + dr, column + dc);
-    if ((before > 0.0f && before < range - jump) || (after > 0.0f && after < range - jump))
-      return 0.0f;  // in the shadow of something nearer
-    const bool open_before =
-        before > range + jump || image.pixel(row - dr, column - dc) == Pixel::kNoReturn;
-    const bool open_after =
-        after > range + jump || image.pixel(row + dr, column + dc) == Pixel::kNoReturn;
+    const bool shadowed =
+        (before > 0.0f && before < range - jump) || (after > 0.0f && after < range - jump);
+    if (shadowed) continue;
+    const bool open_before = image.pixel(row - dr, column - dc) == Pixel::kNoReturn ||
+                             FallsOff(after, range, before, jump);
+    const bool open_after = image.pixel(row + dr, column + dc) == Pixel::kNoReturn ||
+                            FallsOff(before, range, after, jump);
     near_side = near_side || open_before || open_after;
     if (before <= 0.0f || after <= 0.0f || open_before || open_after) continue;
     strength = std::max(strength, Bend(image.point(row - dr, column - dc), image.point(row, column),
@@ -142,6 +152,27 @@ std::vector<Candidate> SortedCandidates(const RangeImage& image, const cv::Mat& 
   return candidates;
 }
 
+// Counts points in the cubes of space, so that crowded places leave some to the others.
+class CubeCounter {
+ public:
+  CubeCounter(double side, int most) : side_(static_cast<float>(side)), most_(most) {}
+
+  // Whether the point's cube has room for it; takes it.
+  bool Take(const Eigen::Vector3f& point) {
+    if (most_ == 0) return true;
+    const Eigen::Vector3i cube = (point / side_).array().floor().cast<int>();
+    int& count = counts_[{cube.x(), cube.y(), cube.z()}];
+    if (count == most_) return false;
+    ++count;
+    return true;
+  }
+
+ private:
+  float side_;  // m
+  int most_;
+  std::map<std::array<int, 3>, int> counts_;
+};
+
 // Marks the pixels around a chosen one whose points lie within the suppression radius.
 void Suppress(const RangeImage& image, const PixelIndex& chosen, double radius,
               std::vector<char>* suppressed) {
@@ -176,6 +207,8 @@ void InterestPointParams::Validate() const {
   CheckWithin("interest_points bend_step", bend_step, 1e-3, 1.0);
   CheckWithin("interest_points min_strength", min_strength, 0.0, 1e9);
   CheckWithin("interest_points suppression_radius", suppression_radius, 0.0, 10.0);
+  CheckWithin("interest_points cube_side", cube_side, 0.01, 100.0);
+  CheckWithin("interest_points max_points_a_cube", max_points_a_cube, 0, 1'000'000);
   CheckWithin("interest_points max_range", max_range, 0.1, 1000.0);
 }
 
@@ -183,7 +216,8 @@ std::string InterestPointParams::Kind() const {
   std::ostringstream kind;
   kind << (measure == InterestMeasure::kHarris ? "harris" : "surface_change") << ' ' << max_points
        << ' ' << harris_window << ' ' << harris_k << ' ' << max_depth_jump << ' ' << bend_step
-       << ' ' << min_strength << ' ' << suppression_radius << ' ' << max_range;
+       << ' ' << min_strength << ' ' << suppression_radius << ' ' << cube_side << ' '
+       << max_points_a_cube << ' ' << max_range;
   return kind.str();
 }
 
@@ -196,9 +230,12 @@ std::vector<PixelIndex> FindInterestPoints(const RangeImage& image,
                                : SurfaceChange(image, params);
   std::vector<char> suppressed(image.grid().size(), 0);
   std::vector<PixelIndex> chosen;
+  CubeCounter cubes(params.cube_side, params.max_points_a_cube);
   for (const Candidate& candidate : SortedCandidates(image, strength, params)) {
     if (suppressed[candidate.index]) continue;
-    chosen.push_back({candidate.index / image.width(), candidate.index % image.width()});
+    const PixelIndex pixel = {candidate.index / image.width(), candidate.index % image.width()};
+    if (!cubes.Take(image.point(pixel.row, pixel.column))) continue;
+    chosen.push_back(pixel);
     if (static_cast<int>(chosen.size()) == params.max_points) break;
     Suppress(image, chosen.back(), params.suppression_radius, &suppressed);
   }

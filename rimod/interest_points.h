@@ -30,10 +30,12 @@ struct InterestPointParams {
   double bend_step = 0.05;      // m, distance over which bends are measured (surface change); > 0
   double min_strength = 1e-6;   // weaker points are left out; >= 0
   double suppression_radius =
-      0.05;                  // m, only the strongest point within this distance is kept; >= 0
-  double max_range = 30.0;   // m, farther points are left out; > 0
-  void Validate() const;     // throws std::invalid_argument naming field and value
-  std::string Kind() const;  // all of it in words: equal when the points found are
+      0.05;                   // m, only the strongest point within this distance is kept; >= 0
+  double cube_side = 0.25;    // m, of the cubes of space in which points are counted; > 0
+  int max_points_a_cube = 0;  // the strongest in a cube are kept; 0: all
+  double max_range = 30.0;    // m, farther points are left out; > 0
+  void Validate() const;      // throws std::invalid_argument naming field and value
+  std::string Kind() const;   // all of it in words: equal when the points found are
 };
 
 // The interest points of a range image, strongest first, ties by position in the image; measured

@@ -83,6 +83,7 @@ PipelineParams OwnParams() {
   params.interest_points.measure = InterestMeasure::kSurfaceChange;
   params.interest_points.max_points = 2000;
   params.interest_points.suppression_radius = 0.045;
+  params.interest_points.max_points_a_cube = 8;
   params.range_patch.normal_pixels = 2.0;
   params.range_patch.mask_empty_cells = false;
   params.model_views.ground_margin = 0.5;

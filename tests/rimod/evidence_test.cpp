@@ -71,7 +71,7 @@ void ExpectSharesAreSound(const Evidence& evidence) {
   for (const EvidenceIndex share :
        {kMatched, kNearlyMatched, kSeenThrough, kOccluded, kNoReturnShare, kMatchedOfKnown,
         kResidual, kSilhouetteJump, kSilhouetteContinues, kSilhouetteOccluded, kSilhouetteKnown,
-        kUnexplained, kSupported, kRelief}) {
+        kUnexplained, kSupported, kRelief, kRimWorst, kRimSecondWorst, kRimMean, kThroughRegion}) {
     EXPECT_GE(v[share], 0.0) << share;
     EXPECT_LE(v[share], 1.0) << share;
   }
@@ -111,6 +111,22 @@ TEST(EvidenceTest, SpeaksAgainstAnObjectThatIsNotThere) {
   ExpectSharesAreSound(evidence);
   EXPECT_LT(evidence.values[kMatched], 0.1);
   EXPECT_GT(evidence.values[kSeenThrough], 0.8);
+}
+
+TEST(EvidenceTest, SeesThroughTheRimOfAModelThatIsTooTall) {
+  BoxShape lower;
+  constexpr double kHeight = 0.5;  // m, the crate is taller by a tenth of a metre
+  lower.T_local_box = kPose * Eigen::Translation3d(0, 0, 0.5 * kHeight);
+  lower.half_size = 0.5 * Eigen::Vector3d(kSize.x(), kSize.y(), kHeight);
+  const auto too_tall =
+      GatherEvidence(Room(false, true, {lower}), JudgedCrate(), kPose, Params()).values;
+  const auto fitting = GatherEvidence(Room(true), JudgedCrate(), kPose, Params()).values;
+  EXPECT_LT(fitting[kRimWorst], 0.3);
+  EXPECT_GT(too_tall[kRimWorst], 0.8);
+  EXPECT_GT(too_tall[kRimMean], fitting[kRimMean] + 0.15);
+  EXPECT_LT(fitting[kThroughRegion], 0.02);
+  EXPECT_GT(too_tall[kThroughRegion], 0.05);
+  EXPECT_LE(too_tall[kThroughRegion], too_tall[kSeenThrough] + 0.1);
 }
 
 TEST(EvidenceTest, KnowsWhatIsHidden) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "tests/io/random_values.h"
@@ -145,6 +147,64 @@ TEST(InterestPointsTest, AWallHasNoneInItsMiddle) {
   }
 }
 
+TEST(InterestPointsTest, ACubeHoldsItsStrongestOnly) {
+  for (const InterestMeasure measure : kMeasures) {
+    InterestPointParams params = Params(measure);
+    params.cube_side = 0.5;
+    params.max_points = 100'000;
+    params.suppression_radius = 0.0;
+    const std::vector<PixelIndex> all = FindInterestPoints(Scene(), params);
+    params.max_points_a_cube = 5;
+    std::map<std::array<int, 3>, int> counts;
+    std::vector<PixelIndex> expected;
+    for (const PixelIndex& pixel : all) {
+      const Eigen::Vector3f cube = (PointOf(Scene(), pixel) / 0.5f).array().floor();
+      int& count = counts[{int(cube.x()), int(cube.y()), int(cube.z())}];
+      if (++count <= 5) expected.push_back(pixel);
+    }
+    ASSERT_LT(expected.size(), all.size());
+    EXPECT_EQ(FindInterestPoints(Scene(), params), expected);
+  }
+}
+
+// A ledge whose one end is hidden by a post: what is seen of it beside the post is found.
+TEST(InterestPointsTest, SurfacesBesideSomethingNearerHaveThem) {
+  World world;
+  world.planes = {{Eigen::Vector3d(4, 0, 0), -Eigen::Vector3d::UnitX()}};
+  BoxShape ledge, post;
+  ledge.T_local_box = Placed(3.0, 0.0, 0.0, 0.0);
+  ledge.half_size = Eigen::Vector3d(0.25, 0.08, 0.08);
+  post.T_local_box = Placed(2.0, 0.07, 0.0, 0.0);
+  post.half_size = Eigen::Vector3d(0.03, 0.03, 0.8);
+  world.boxes = {ledge, post};
+  RangeImageParams image_params;
+  image_params.resolution = 0.0069;
+  const RangeImage image =
+      MakeRangeImage(ScanWorld(world, Placed(0.0, 0.0, 0.9, 0.0), BeamPattern{}), image_params);
+  InterestPointParams params = Params(InterestMeasure::kSurfaceChange);
+  int on_the_ledge = 0;
+  for (const PixelIndex& pixel : FindInterestPoints(image, params)) {
+    const Eigen::Vector3f p = PointOf(image, pixel);
+    on_the_ledge += p.x() > 2.7f && p.x() < 3.3f && std::abs(p.y()) < 0.1f;
+  }
+  EXPECT_GE(on_the_ledge, 2);
+}
+
+// Far away the rows on a floor lie farther apart than a depth jump.
+TEST(InterestPointsTest, AFloorFarAwayIsNoEdge) {
+  World world;
+  world.planes = {{Eigen::Vector3d(0, 0, -1), Eigen::Vector3d::UnitZ()}};
+  RangeImageParams image_params;
+  image_params.resolution = 0.0069;
+  const RangeImage image =
+      MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), BeamPattern{}), image_params);
+  for (const PixelIndex& pixel :
+       FindInterestPoints(image, Params(InterestMeasure::kSurfaceChange))) {
+    const float range = image.range(pixel.row, pixel.column);
+    EXPECT_FALSE(range > 4.0f && range < 12.0f) << range;
+  }
+}
+
 TEST(InterestPointsTest, KeepToTheMaximumRange) {
   for (const InterestMeasure measure : kMeasures) {
     InterestPointParams params = Params(measure);
@@ -193,6 +253,8 @@ TEST(InterestPointParamsTest, KindTellsDifferentPointsApart) {
       [](InterestPointParams* p) { p->bend_step = 0.06; },
       [](InterestPointParams* p) { p->min_strength = 2e-6; },
       [](InterestPointParams* p) { p->suppression_radius = 0.06; },
+      [](InterestPointParams* p) { p->cube_side = 0.3; },
+      [](InterestPointParams* p) { p->max_points_a_cube = 7; },
       [](InterestPointParams* p) { p->max_range = 2.0; },
   };
   const InterestPointParams params = Params(InterestMeasure::kHarris);

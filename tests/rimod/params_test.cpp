@@ -44,6 +44,7 @@ const std::vector<RealField>& RealFields() {
       REAL(interest_points, max_depth_jump, 0.0, -1.0),
       REAL(interest_points, min_strength, -0.1),
       REAL(interest_points, suppression_radius, -0.01),
+      REAL(interest_points, cube_side, 0.0, -0.25),
       REAL(interest_points, max_range, 0.0, -1.0),
       REAL(range_patch, support_size, 0.01, 2.1),
       REAL(range_patch, normal_radius, 0.0, 2.1),
@@ -104,6 +105,7 @@ const std::vector<RealField>& RealFields() {
       REAL(evidence, depth_tolerance, 0.0, -0.1),
       REAL(evidence, slope_tolerance, -0.1),
       REAL(evidence, silhouette_gap, 0.0, -0.1),
+      REAL(evidence, rim_inset, 0.0, -0.01),
       REAL(evidence, continue_tolerance, 0.0, -0.1),
       REAL(evidence, support_height, 0.0, -0.1),
       REAL(choice, min_probability, -0.1, 1.1),
@@ -117,6 +119,7 @@ const std::vector<RealField>& RealFields() {
 const std::vector<CountField>& CountFields() {
   static const std::vector<CountField> fields = {
       COUNT(interest_points, max_points, 0, -1),
+      COUNT(interest_points, max_points_a_cube, -1),
       COUNT(interest_points, harris_window, 1, 16),
       COUNT(range_patch, resolution, 1, 17),
       COUNT(range_patch, min_points, 2),
