@@ -36,11 +36,10 @@ std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondenc
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(matches.size());
   for (const Correspondence& match : matches) {
-    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
-    const Feature& model_feature = *database.features(origin.model)[origin.feature];
+    const ModelDatabase::PlacedFeature& model_feature = database.feature(match.model_feature);
     const Eigen::Vector3d line_of_sight =
         model_feature.position.cast<double>() -
-        database.models()[origin.model].views[origin.view].viewpoint;
+        database.models()[model_feature.model].views[model_feature.view].viewpoint;
     const Feature& scene_feature = features.features[match.scene_feature];
     const std::optional<Eigen::Isometry3d> upright = PoseFromCorrespondence(
         scene_feature, model_feature, line_of_sight, params.range_patch.max_vertical_cosine,
@@ -48,7 +47,7 @@ std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondenc
     if (!upright) continue;
     const auto add = [&](const Eigen::Isometry3d& pose) {
       Hypothesis hypothesis;
-      hypothesis.model = origin.model;
+      hypothesis.model = model_feature.model;
       hypothesis.T_sensor_object = pose.cast<float>();
       hypothesis.figures.descriptor_distance = static_cast<float>(match.distance);
       hypotheses.push_back(hypothesis);

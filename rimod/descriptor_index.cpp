@@ -5,14 +5,20 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <stdexcept>
 
 namespace rimod {
 namespace {
 
 constexpr int kLeafSize = 8;
+constexpr int kLanes = 4;  // values that processors work on at once
 
+// Equal to float(value * kDescriptorUnit) for every value (a test compares), but divisions of
+// floats are vectorised.
 float ToMetres(std::int16_t value) {
-  return value == kEmptyCell ? 0.0f : static_cast<float>(value * kDescriptorUnit);
+  constexpr float kStepsPerMetre = 10000.0f;
+  static_assert(kDescriptorUnit * 10000 == 1.0, "the inverse of the unit");
+  return value == kEmptyCell ? 0.0f : static_cast<float>(value) / kStepsPerMetre;
 }
 
 // A subtree still to be searched, with the smallest squared distance that anything in it can have.
@@ -26,6 +32,32 @@ struct Branch {
 
 bool Nearer(const DescriptorMatch& a, const DescriptorMatch& b) {
   return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
+}
+
+// Nodes of the tree over so many descriptors. Halving gives pieces of two sizes at each level.
+int NumNodes(int count) {
+  int size = count;  // of the smaller pieces; the larger ones have one more
+  int num_small = 1, num_large = 0;
+  int total = 0;
+  while (num_small + num_large > 0) {
+    total += num_small + num_large;
+    if (size <= kLeafSize) num_small = 0;
+    if (size + 1 <= kLeafSize) num_large = 0;
+    const int small = size % 2 == 0 ? 2 * num_small + num_large : num_small;
+    const int large = size % 2 == 0 ? num_large : num_small + 2 * num_large;
+    num_small = small;
+    num_large = large;
+    size /= 2;
+  }
+  return total;
+}
+
+std::vector<std::int16_t> Flat(const std::vector<const Descriptor*>& descriptors) {
+  std::vector<std::int16_t> values;
+  if (!descriptors.empty()) values.reserve(descriptors.size() * descriptors.front()->size());
+  for (const Descriptor* descriptor : descriptors)
+    values.insert(values.end(), descriptor->begin(), descriptor->end());
+  return values;
 }
 
 }  // namespace
@@ -43,71 +75,165 @@ double DescriptorDistance(const Descriptor& a, const Descriptor& b, int min_shar
   return kDescriptorUnit * std::sqrt(static_cast<double>(sum) / shared);
 }
 
-DescriptorIndex::DescriptorIndex(const std::vector<const Descriptor*>& descriptors)
-    : size_(descriptors.empty() ? 0 : static_cast<int>(descriptors.front()->size())),
-      order_(descriptors.size()) {
-  values_.reserve(descriptors.size() * size_);
-  for (const Descriptor* descriptor : descriptors)
-    for (const std::int16_t value : *descriptor) {
-      values_.push_back(ToMetres(value));
-      filled_.push_back(value == kEmptyCell ? 0.0f : 1.0f);
-    }
+struct DescriptorIndex::Piece {
+  int node = 0;
+  int first = 0, last = 0;
+};
+
+DescriptorIndex::DescriptorIndex(const std::vector<const Descriptor*>& descriptors,
+                                 const Execution& execution)
+    : DescriptorIndex(Flat(descriptors),
+                      descriptors.empty() ? 1 : static_cast<int>(descriptors.front()->size()),
+                      execution) {}
+
+DescriptorIndex::DescriptorIndex(std::vector<std::int16_t> values, int size,
+                                 const Execution& execution)
+    : size_(size), stride_((size + kLanes - 1) / kLanes * kLanes) {
+  if (size < 1 || values.size() % static_cast<std::size_t>(size) != 0)
+    throw std::invalid_argument("descriptors of size " + std::to_string(size) + " cannot have " +
+                                std::to_string(values.size()) + " values");
+  const std::size_t count = values.size() / static_cast<std::size_t>(size);
+  if (stride_ == size_) {
+    values_ = std::move(values);
+  } else {
+    values_.assign(count * stride_, 0);
+    for (std::size_t i = 0; i < count; ++i)
+      std::copy_n(&values[i * size_], size_, &values_[i * stride_]);
+  }
+  order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0);
-  if (!order_.empty()) Build(0, size());
+  if (count > 0) Build(execution);
 }
 
-int DescriptorIndex::Build(int first, int last) {
-  const int id = static_cast<int>(nodes_.size());
-  nodes_.push_back({-1, 0.0f, -1, -1, first, last});
-  if (last - first <= kLeafSize) return id;
+// Level by level while there are few pieces, then piece by piece.
+void DescriptorIndex::Build(const Execution& execution) {
+  constexpr std::size_t kManyPieces = 64;
+  nodes_.resize(static_cast<std::size_t>(NumNodes(size())));
+  std::vector<Piece> pieces = {{0, 0, size()}};
+  while (!pieces.empty() && pieces.size() < kManyPieces) {
+    std::vector<std::vector<Piece>> halves(pieces.size());
+    execution.parallel_for(pieces.size(), [&](std::size_t i) { halves[i] = Halves(pieces[i]); });
+    pieces.clear();
+    for (const std::vector<Piece>& two : halves)
+      pieces.insert(pieces.end(), two.begin(), two.end());
+  }
+  execution.parallel_for(pieces.size(), [&](std::size_t i) { BuildAll(pieces[i]); });
+}
 
-  int dimension = 0;
-  double best_variance = -1.0;
-  for (int d = 0; d < size_; ++d) {
-    double sum = 0.0, sum_sq = 0.0;
-    for (int i = first; i < last; ++i) {
-      const double value = Value(order_[i], d);
-      sum += value;
-      sum_sq += value * value;
-    }
-    const double mean = sum / (last - first);
-    const double variance = sum_sq / (last - first) - mean * mean;
-    if (variance > best_variance) {
-      best_variance = variance;
-      dimension = d;
+void DescriptorIndex::BuildAll(const Piece& piece) {
+  for (const Piece& half : Halves(piece)) BuildAll(half);
+}
+
+// Writes the piece's node; returns what lies below it.
+std::vector<DescriptorIndex::Piece> DescriptorIndex::Halves(const Piece& piece) {
+  Node& node = nodes_[piece.node];
+  if (piece.last - piece.first <= kLeafSize) {
+    node = {-1, 0.0f, piece.first, piece.last};
+    return {};
+  }
+  const int middle = piece.first + (piece.last - piece.first) / 2;
+  const int dimension = WidestDimension(piece.first, piece.last);
+  Sort(piece.first, middle, piece.last, dimension);
+  const int left = piece.node + 1;
+  const int right = left + NumNodes(middle - piece.first);
+  node = {dimension, ToMetres(ValuesAt(middle)[dimension]), right, 0};
+  return {{left, piece.first, middle}, {right, middle, piece.last}};
+}
+
+// That of the largest variance, the first of equals.
+int DescriptorIndex::WidestDimension(int first, int last) const {
+  std::vector<double> sums(2 * static_cast<std::size_t>(size_), 0.0);
+  double* const sum = sums.data();
+  double* const sum_sq = sum + size_;
+  for (int place = first; place < last; ++place) {
+    const std::int16_t* const values = ValuesAt(place);
+    for (int d = 0; d < size_; ++d) {
+      const double value = ToMetres(values[d]);
+      sum[d] += value;
+      sum_sq[d] += value * value;
     }
   }
-  const int middle = (first + last) / 2;
-  std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last,
-                   [this, dimension](int a, int b) {
-                     const float va = Value(a, dimension), vb = Value(b, dimension);
-                     return va != vb ? va < vb : a < b;
-                   });
-  nodes_[id].dimension = dimension;
-  nodes_[id].split = Value(order_[middle], dimension);
-  const int left = Build(first, middle);
-  const int right = Build(middle, last);
-  nodes_[id].left = left;
-  nodes_[id].right = right;
-  return id;
+  const double count = last - first;
+  int widest = 0;
+  double largest = -1.0;
+  for (int d = 0; d < size_; ++d) {
+    const double mean = sum[d] / count;
+    const double variance = sum_sq[d] / count - mean * mean;
+    if (variance <= largest) continue;
+    largest = variance;
+    widest = d;
+  }
+  return widest;
 }
 
-double DescriptorIndex::DistanceSq(const std::vector<float>& query, int descriptor) const {
-  const float* const values = &values_[static_cast<std::size_t>(descriptor) * size_];
+// Places before the middle get what is smaller along the dimension, ties by number.
+void DescriptorIndex::Sort(int first, int middle, int last, int dimension) {
+  struct Key {
+    float value;
+    int descriptor, place;
+  };
+  std::vector<Key> keys(static_cast<std::size_t>(last - first));
+  for (int place = first; place < last; ++place)
+    keys[place - first] = {ToMetres(ValuesAt(place)[dimension]), order_[place], place};
+  std::nth_element(keys.begin(), keys.begin() + (middle - first), keys.end(),
+                   [](const Key& a, const Key& b) {
+                     return a.value != b.value ? a.value < b.value : a.descriptor < b.descriptor;
+                   });
+  std::vector<std::int16_t> sorted(keys.size() * stride_);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::copy_n(ValuesAt(keys[i].place), stride_, &sorted[i * stride_]);
+    order_[first + static_cast<int>(i)] = keys[i].descriptor;
+  }
+  std::copy(sorted.begin(), sorted.end(),
+            values_.begin() + static_cast<std::ptrdiff_t>(first) * stride_);
+}
+
+// What is looked for, in the forms in which it is compared.
+struct DescriptorIndex::Query {
+  explicit Query(const Descriptor& descriptor, int stride)
+      : metres(descriptor.size()), filled(descriptor.size()), steps(stride, 0) {
+    for (std::size_t d = 0; d < descriptor.size(); ++d) {
+      metres[d] = ToMetres(descriptor[d]);
+      filled[d] = descriptor[d] == kEmptyCell ? 0.0f : 1.0f;
+      steps[d] = descriptor[d] == kEmptyCell ? 0 : descriptor[d];
+    }
+  }
+  std::vector<float> metres, filled;
+  std::vector<std::int32_t> steps;
+};
+
+double DescriptorIndex::DistanceSq(const Query& query, int place) const {
+  const std::int16_t* const values = ValuesAt(place);
   float sum_sq = 0.0f;
-  for (int d = 0; d < size_; ++d) sum_sq += (query[d] - values[d]) * (query[d] - values[d]);
+  for (int d = 0; d < size_; ++d) {
+    const float difference = query.metres[d] - ToMetres(values[d]);
+    sum_sq += difference * difference;
+  }
   return static_cast<double>(sum_sq) / size_;
 }
 
-double DescriptorIndex::SharedDistanceSq(const std::vector<float>& query,
-                                         const std::vector<float>& query_filled, int descriptor,
-                                         int min_shared) const {
-  const float* const values = &values_[static_cast<std::size_t>(descriptor) * size_];
-  const float* const filled = &filled_[static_cast<std::size_t>(descriptor) * size_];
+float DescriptorIndex::RoughSumSq(const Query& query, int place) const {
+  const std::int16_t* const values = ValuesAt(place);
+  const std::int32_t* const steps = query.steps.data();
+  float sums[kLanes] = {};
+  for (int d = 0; d < stride_; d += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::int16_t value = values[d + lane];
+      const float difference =
+          static_cast<float>(steps[d + lane] - (value == kEmptyCell ? 0 : value));
+      sums[lane] += difference * difference;
+    }
+  }
+  constexpr float kUnitSq = static_cast<float>(kDescriptorUnit * kDescriptorUnit);
+  return kUnitSq * ((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+double DescriptorIndex::SharedDistanceSq(const Query& query, int place, int min_shared) const {
+  const std::int16_t* const values = ValuesAt(place);
   float sum_sq = 0.0f, shared = 0.0f;
   for (int d = 0; d < size_; ++d) {
-    const float both = query_filled[d] * filled[d];
-    const float difference = query[d] - values[d];
+    const float both = values[d] == kEmptyCell ? 0.0f : query.filled[d];
+    const float difference = query.metres[d] - ToMetres(values[d]);
     sum_sq += both * difference * difference;
     shared += both;
   }
@@ -120,11 +246,7 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
                                                        int min_shared) const {
   std::vector<DescriptorMatch> found;
   if (nodes_.empty() || max_matches < 1 || static_cast<int>(query.size()) != size_) return found;
-  std::vector<float> q(query.size());
-  std::transform(query.begin(), query.end(), q.begin(), ToMetres);
-  std::vector<float> filled(query.size());
-  std::transform(query.begin(), query.end(), filled.begin(),
-                 [](std::int16_t value) { return value == kEmptyCell ? 0.0f : 1.0f; });
+  const Query q(query, stride_);
   const double max_sq = max_distance * max_distance * size_;
 
   // The max_matches nearest so far, the farthest on top.
@@ -144,6 +266,8 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
     if (min_shared == 0 && static_cast<int>(found.size()) == max_matches)
       worst_sq = std::min(worst_sq, found.front().distance * size_);
   };
+  // Far more than rounding makes of any sum; the second part counts for the smallest.
+  constexpr double kRoughFactor = 1.001, kRoughOffset = 1e-9;  // m^2
 
   std::priority_queue<Branch> branches;
   branches.push({0.0, 0});
@@ -154,18 +278,20 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
     if (branch.bound_sq > worst_sq) break;  // all others are farther, too
     int node = branch.node;
     while (nodes_[node].dimension >= 0) {
-      const double gap = static_cast<double>(q[nodes_[node].dimension]) - nodes_[node].split;
-      const int near = gap < 0.0 ? nodes_[node].left : nodes_[node].right;
-      const int far = gap < 0.0 ? nodes_[node].right : nodes_[node].left;
+      const double gap = static_cast<double>(q.metres[nodes_[node].dimension]) - nodes_[node].split;
+      const int near = gap < 0.0 ? node + 1 : nodes_[node].right;
+      const int far = gap < 0.0 ? nodes_[node].right : node + 1;
       const double bound_sq = std::max(branch.bound_sq, gap * gap);
       if (bound_sq <= worst_sq) branches.push({bound_sq, far});
       node = near;
     }
-    for (int i = nodes_[node].first; i < nodes_[node].last; ++i) {
+    for (int place = nodes_[node].right; place < nodes_[node].last; ++place) {
       ++checks;
-      const double distance_sq = min_shared > 0 ? SharedDistanceSq(q, filled, order_[i], min_shared)
-                                                : DistanceSq(q, order_[i]);
-      keep(order_[i], distance_sq);
+      if (min_shared > 0) {
+        keep(order_[place], SharedDistanceSq(q, place, min_shared));
+      } else if (RoughSumSq(q, place) <= kRoughFactor * worst_sq + kRoughOffset) {
+        keep(order_[place], DistanceSq(q, place));
+      }
     }
   }
   std::sort_heap(found.begin(), found.end(), Nearer);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "rimod/execution.h"
 #include "rimod/features.h"
 
 namespace rimod {
@@ -23,7 +24,10 @@ double DescriptorDistance(const Descriptor& a, const Descriptor& b, int min_shar
 class DescriptorIndex {
  public:
   // All of one size; may be empty.
-  explicit DescriptorIndex(const std::vector<const Descriptor*>& descriptors);
+  explicit DescriptorIndex(const std::vector<const Descriptor*>& descriptors,
+                           const Execution& execution = {});
+  // The same from descriptors one after the other, of so many values each; size >= 1.
+  DescriptorIndex(std::vector<std::int16_t> values, int size, const Execution& execution);
 
   // The nearest of the descriptors that were looked at, at most max_matches within max_distance,
   // nearest first, ties by index. Looks at max_checks descriptors at least when there are as many;
@@ -36,25 +40,35 @@ class DescriptorIndex {
   int size() const { return static_cast<int>(order_.size()); }
 
  private:
+  // The left child of node i is i + 1.
   struct Node {
     int dimension = -1;  // -1: a leaf
     float split = 0.0f;  // smaller values go left
-    int left = -1, right = -1;
-    int first = 0, last = 0;  // leaf: range in order_
+    int right = 0;       // child; of a leaf: its first place
+    int last = 0;        // of a leaf: the place behind its last one
   };
-  int Build(int first, int last);
+  struct Piece;  // of the places, to be made a subtree
+  struct Query;
+  void Build(const Execution& execution);
+  std::vector<Piece> Halves(const Piece& piece);
+  void BuildAll(const Piece& piece);
+  int WidestDimension(int first, int last) const;
+  void Sort(int first, int middle, int last, int dimension);
+
   // Mean squared difference over all cells, or over those that both have; m^2.
-  double DistanceSq(const std::vector<float>& query, int descriptor) const;
-  double SharedDistanceSq(const std::vector<float>& query, const std::vector<float>& query_filled,
-                          int descriptor, int min_shared) const;
-  float Value(int descriptor, int dimension) const {
-    return values_[static_cast<std::size_t>(descriptor) * size_ + dimension];
+  double DistanceSq(const Query& query, int place) const;
+  double SharedDistanceSq(const Query& query, int place, int min_shared) const;
+  // Sum of the squared differences over all cells, m^2, good to a millionth.
+  float RoughSumSq(const Query& query, int place) const;
+  const std::int16_t* ValuesAt(int place) const {
+    return &values_[static_cast<std::size_t>(place) * stride_];
   }
 
-  int size_ = 0;               // values a descriptor
-  std::vector<float> values_;  // m, descriptor by descriptor
-  std::vector<float> filled_;  // likewise, 1 where the cell is not empty, else 0
-  std::vector<int> order_;
+  int size_ = 0;    // values a descriptor
+  int stride_ = 0;  // places of a descriptor in values_, those beyond its size are 0
+  // Descriptors lie in the order of the leaves, so that a leaf is read in one go: these are places.
+  std::vector<std::int16_t> values_;
+  std::vector<int> order_;  // which descriptor has a place
   std::vector<Node> nodes_;
 };
 

@@ -15,6 +15,9 @@ class DescriptorProjection {
   // All of one size; at most that many dimensions.
   DescriptorProjection(const std::vector<const Descriptor*>& descriptors, int dimensions);
 
+  // Values that projected descriptors have; 0 when there were no descriptors.
+  int dimensions() const { return static_cast<int>(axes_.rows()); }
+
   // In kDescriptorUnit like what it came from; values that do not fit are clipped.
   Descriptor Project(const Descriptor& descriptor) const;
 

@@ -3,42 +3,17 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "rimod/check.h"
 #include "rimod/rim_fit.h"
 #include "rimod/surface_rendering.h"
+#include "rimod/surface_thinning.h"
 
 namespace rimod {
 namespace {
 
 constexpr float kSurfaceCell = 0.025f;   // m, cells that tell what lies on the surface
 constexpr double kSampleSpacing = 0.03;  // m, of the points for refinement
-
-// Keeps the first point in each cell and side of the surface.
-ObjectModel Thin(const ObjectModel& model, double spacing) {
-  ObjectModel thin;
-  thin.name = model.name;
-  thin.box_min = model.box_min;
-  thin.box_max = model.box_max;
-  thin.point_spacing = spacing;
-  std::map<std::tuple<long, long, long>, std::vector<Eigen::Vector3f>> taken;
-  for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const Eigen::Vector3d cell = model.points[i].cast<double>() / spacing;
-    std::vector<Eigen::Vector3f>& normals =
-        taken[{std::lround(cell.x()), std::lround(cell.y()), std::lround(cell.z())}];
-    constexpr float kSameSide = 0.5f;
-    const bool known = std::any_of(normals.begin(), normals.end(), [&](const Eigen::Vector3f& n) {
-      return n.dot(model.normals[i]) > kSameSide;
-    });
-    if (known) continue;
-    normals.push_back(model.normals[i]);
-    thin.points.push_back(model.points[i]);
-    thin.normals.push_back(model.normals[i]);
-  }
-  return thin;
-}
 
 // Counts over the rendered pixels.
 struct Counts {
@@ -341,29 +316,36 @@ void EvidenceParams::Validate() const {
 }
 
 JudgedModel::JudgedModel(const ObjectModel& model) : model_(&model) {
-  const ObjectModel thin = Thin(model, std::max(kSampleSpacing, model.point_spacing));
-  for (std::size_t i = 0; i < thin.points.size(); ++i) {
-    sample_.points.push_back(thin.points[i]);
-    sample_.normals.push_back(thin.normals[i]);
-  }
+  ObjectModel thin = ThinSurface(model, std::max(kSampleSpacing, model.point_spacing));
+  sample_ = {std::move(thin.points), std::move(thin.normals)};
   for (const double factor : {1.6, 2.5, 4.0})
-    thinned_.push_back(Thin(model, factor * model.point_spacing));
+    thinned_.push_back(ThinSurface(model, factor * model.point_spacing));
 
   grid_origin_ = model.box_min.cast<float>().array() - 2 * kSurfaceCell;
   const Eigen::Vector3d extent = (model.box_max - model.box_min) / kSurfaceCell;
   for (int d = 0; d < 3; ++d) grid_size_[d] = static_cast<int>(std::min(extent[d], 400.0)) + 5;
-  near_surface_.assign(static_cast<std::size_t>(grid_size_[0]) * grid_size_[1] * grid_size_[2], 0);
+  // The cells that hold points, with a margin of one, grown by one along each axis in turn.
+  const Eigen::Vector3i margin = Eigen::Vector3i::Ones();
+  const Eigen::Vector3i size = grid_size_ + 2 * margin;
+  std::vector<char> cells(static_cast<std::size_t>(size[0]) * size[1] * size[2], 0);
+  const std::array<std::size_t, 3> steps = {static_cast<std::size_t>(size[1]) * size[2],
+                                            static_cast<std::size_t>(size[2]), 1};
   for (const Eigen::Vector3f& point : model.points) {
     const Eigen::Vector3i cell =
-        ((point - grid_origin_) / kSurfaceCell).array().floor().cast<int>();
-    for (int x = cell.x() - 1; x <= cell.x() + 1; ++x)
-      for (int y = cell.y() - 1; y <= cell.y() + 1; ++y)
-        for (int z = cell.z() - 1; z <= cell.z() + 1; ++z)
-          if (x >= 0 && x < grid_size_[0] && y >= 0 && y < grid_size_[1] && z >= 0 &&
-              z < grid_size_[2])
-            near_surface_[(static_cast<std::size_t>(x) * grid_size_[1] + y) * grid_size_[2] + z] =
-                1;
+        ((point - grid_origin_) / kSurfaceCell).array().floor().cast<int>() + margin.array();
+    if ((cell.array() < 0).any() || (cell.array() >= size.array()).any()) continue;
+    cells[cell[0] * steps[0] + cell[1] * steps[1] + cell[2]] = 1;
   }
+  for (const std::size_t step : steps) {
+    const std::vector<char> before = cells;
+    for (std::size_t i = step; i + step < cells.size(); ++i)
+      cells[i] = static_cast<char>(before[i - step] | before[i] | before[i + step]);
+  }
+  near_surface_.reserve(static_cast<std::size_t>(grid_size_[0]) * grid_size_[1] * grid_size_[2]);
+  for (int x = 1; x <= grid_size_[0]; ++x)
+    for (int y = 1; y <= grid_size_[1]; ++y)
+      for (int z = 1; z <= grid_size_[2]; ++z)
+        near_surface_.push_back(cells[x * steps[0] + y * steps[1] + z] != 0);
 }
 
 const ObjectModel& JudgedModel::Thinned(double pixel_size) const {
@@ -379,7 +361,7 @@ bool JudgedModel::OnSurface(const Eigen::Vector3f& p_object) const {
   if ((cell.array() < 0).any() || (cell.array() >= grid_size_.array()).any()) return false;
   return near_surface_[(static_cast<std::size_t>(cell[0]) * grid_size_[1] + cell[1]) *
                            grid_size_[2] +
-                       cell[2]] != 0;
+                       cell[2]];
 }
 
 Evidence GatherEvidence(const Scene& scene, const JudgedModel& model,

@@ -92,7 +92,7 @@ class JudgedModel {
   std::vector<ObjectModel> thinned_;  // by rising spacing; the first is the model itself
   Eigen::Vector3f grid_origin_;
   Eigen::Vector3i grid_size_;
-  std::vector<std::uint8_t> near_surface_;
+  std::vector<bool> near_surface_;  // by cell: bits, for models are many
 };
 
 // Evidence for a pose. No pixel rendered: all zero, nothing explained.

@@ -45,9 +45,8 @@ FeatureSupport FeatureSupportCounter::Count(const Candidate& candidate) const {
 
 bool FeatureSupportCounter::Explains(const Correspondence& match, int model,
                                      const Feature& on_object) const {
-  const ModelDatabase::FeatureOrigin& origin = database_.origin(match.model_feature);
-  if (origin.model != model) return false;
-  const Feature& model_feature = *database_.features(origin.model)[origin.feature];
+  const ModelDatabase::PlacedFeature& model_feature = database_.feature(match.model_feature);
+  if (model_feature.model != model) return false;
   return (model_feature.position - on_object.position).squaredNorm() < kSamePlace * kSamePlace &&
          model_feature.normal.dot(on_object.normal) > kSameNormal;
 }

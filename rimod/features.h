@@ -12,12 +12,16 @@ using Descriptor = std::vector<std::int16_t>;
 constexpr double kDescriptorUnit = 1e-4;  // m
 constexpr std::int16_t kEmptyCell = INT16_MIN;
 
-// An interest point with the description of the surface around it (paper, section III-A).
-struct Feature {
+// A place on a surface.
+struct OrientedPoint {
   Eigen::Vector3f position =
       Eigen::Vector3f::Zero();  // m; level sensor frame, or object frame in models
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  // unit, towards the side that was seen; same frame
+};
+
+// An interest point with the description of the surface around it (paper, section III-A).
+struct Feature : OrientedPoint {
   Descriptor descriptor;
 };
 

@@ -1,6 +1,7 @@
 #include "rimod/model_database.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "rimod/feature_extraction.h"
@@ -8,12 +9,19 @@
 namespace rimod {
 namespace {
 
-std::vector<const Descriptor*> Descriptors(
-    const std::vector<std::vector<const Feature*>>& features) {
+// The descriptors of all features, in the list's order.
+std::vector<const Descriptor*> Descriptors(const std::vector<ObjectModel>& models) {
   std::vector<const Descriptor*> descriptors;
-  for (const std::vector<const Feature*>& list : features)
-    for (const Feature* feature : list) descriptors.push_back(&feature->descriptor);
+  for (const ObjectModel& model : models)
+    for (const ModelView& view : model.views)
+      for (const Feature& feature : view.features) descriptors.push_back(&feature.descriptor);
   return descriptors;
+}
+
+void FreeLists(ModelView* view) {
+  ModelView bare;
+  bare.viewpoint = view->viewpoint;
+  *view = std::move(bare);
 }
 
 }  // namespace
@@ -21,59 +29,81 @@ std::vector<const Descriptor*> Descriptors(
 ModelDatabase::ModelDatabase(std::vector<ObjectModel> models, const PipelineParams& params,
                              const Execution& execution)
     : method_(params.method), models_(std::move(models)) {
+  PrepareModels(params, execution);
+  if (!models_.empty()) descriptor_kind_ = models_.front().descriptor_kind;
+  PlaceFeatures();
+  if (params.method == Method::kPaper) {
+    PreparePaperMethod(params, execution);
+  } else {
+    PrepareDefaultMethod(params, execution);
+  }
+}
+
+void ModelDatabase::PrepareModels(const PipelineParams& params, const Execution& execution) {
   std::sort(models_.begin(), models_.end(),
             [](const ObjectModel& a, const ObjectModel& b) { return a.name < b.name; });
+  execution.parallel_for(models_.size(), [&](std::size_t m) { ValidateModel(models_[m]); });
   for (std::size_t m = 0; m < models_.size(); ++m) {
-    ValidateModel(models_[m]);
     if (m > 0 && models_[m].name == models_[m - 1].name)
       throw std::invalid_argument("two models of the name " + models_[m].name);
     if (!ModelMatchesParams(models_[m], params)) ComputeModelViews(params, execution, &models_[m]);
   }
-  if (!models_.empty()) descriptor_kind_ = models_.front().descriptor_kind;
-
-  ListFeatures();
-  if (params.method == Method::kPaper) {
-    PreparePaperMethod(params);
-  } else {
-    PrepareDefaultMethod(params);
-  }
 }
 
-void ModelDatabase::ListFeatures() {
-  features_.resize(models_.size());
+void ModelDatabase::PlaceFeatures() {
+  std::size_t count = 0;
+  for (const ObjectModel& model : models_)
+    for (const ModelView& view : model.views) count += view.features.size();
+  placed_features_.reserve(count);
   for (std::size_t m = 0; m < models_.size(); ++m) {
-    for (std::size_t v = 0; v < models_[m].views.size(); ++v) {
-      for (const Feature& feature : models_[m].views[v].features) {
-        origins_.push_back(
-            {static_cast<int>(m), static_cast<int>(features_[m].size()), static_cast<int>(v)});
-        features_[m].push_back(&feature);
-      }
-    }
+    first_features_.push_back(static_cast<int>(placed_features_.size()));
+    for (std::size_t v = 0; v < models_[m].views.size(); ++v)
+      for (const Feature& feature : models_[m].views[v].features)
+        placed_features_.push_back(
+            {{feature.position, feature.normal}, static_cast<int>(m), static_cast<int>(v)});
   }
+  first_features_.push_back(static_cast<int>(placed_features_.size()));
 }
 
-void ModelDatabase::PreparePaperMethod(const PipelineParams& params) {
-  descriptors_ = std::make_unique<DescriptorIndex>(Descriptors(features_));
+void ModelDatabase::PreparePaperMethod(const PipelineParams& params, const Execution& execution) {
+  descriptors_ = std::make_unique<DescriptorIndex>(Descriptors(models_), execution);
+  features_.resize(models_.size());
+  for (std::size_t m = 0; m < models_.size(); ++m)
+    for (const ModelView& view : models_[m].views)
+      for (const Feature& feature : view.features) features_[m].push_back(&feature);
   for (const ObjectModel& model : models_)
     collision_shapes_.emplace_back(model, params.collisions.cell);
 }
 
-void ModelDatabase::PrepareDefaultMethod(const PipelineParams& params) {
-  const std::vector<const Descriptor*> descriptors = Descriptors(features_);
-  projection_ =
-      std::make_unique<DescriptorProjection>(descriptors, params.matching.projected_dimensions);
-  std::vector<Descriptor> projected;
-  projected.reserve(descriptors.size());
-  for (const Descriptor* descriptor : descriptors)
-    projected.push_back(projection_->Project(*descriptor));
-  std::vector<const Descriptor*> pointers;
-  pointers.reserve(projected.size());
-  for (const Descriptor& descriptor : projected) pointers.push_back(&descriptor);
-  projected_descriptors_ = std::make_unique<DescriptorIndex>(pointers);
-  for (const ObjectModel& model : models_) {
-    ranking_models_.push_back(MakeRankingModel(model));
-    judged_models_.emplace_back(model);
-  }
+void ModelDatabase::PrepareDefaultMethod(const PipelineParams& params, const Execution& execution) {
+  projection_ = std::make_unique<DescriptorProjection>(Descriptors(models_),
+                                                       params.matching.projected_dimensions);
+  std::vector<std::int16_t> projected = ProjectedValues(execution);
+  ranking_models_.resize(models_.size());
+  std::vector<std::optional<JudgedModel>> judged(models_.size());
+  execution.parallel_for(models_.size(), [&](std::size_t m) {
+    ranking_models_[m] = MakeRankingModel(models_[m]);
+    judged[m].emplace(models_[m]);
+    for (ModelView& view : models_[m].views) FreeLists(&view);
+  });
+  for (std::optional<JudgedModel>& model : judged) judged_models_.push_back(std::move(*model));
+  projected_descriptors_ = std::make_unique<DescriptorIndex>(
+      std::move(projected), std::max(projection_->dimensions(), 1), execution);
+}
+
+std::vector<std::int16_t> ModelDatabase::ProjectedValues(const Execution& execution) const {
+  const std::size_t size = static_cast<std::size_t>(projection_->dimensions());
+  std::vector<std::int16_t> values(placed_features_.size() * size);
+  execution.parallel_for(models_.size(), [&](std::size_t m) {
+    auto out = values.begin() + static_cast<std::ptrdiff_t>(first_features_[m] * size);
+    for (const ModelView& view : models_[m].views) {
+      for (const Feature& feature : view.features) {
+        const Descriptor projected = projection_->Project(feature.descriptor);
+        out = std::copy(projected.begin(), projected.end(), out);
+      }
+    }
+  });
+  return values;
 }
 
 }  // namespace rimod

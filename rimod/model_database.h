@@ -21,45 +21,52 @@ class ModelDatabase {
  public:
   ModelDatabase(std::vector<ObjectModel> models, const PipelineParams& params,
                 const Execution& execution);
+  // Parts refer to each other.
+  ModelDatabase(const ModelDatabase&) = delete;
+  ModelDatabase& operator=(const ModelDatabase&) = delete;
 
-  // Sorted by name.
+  // Sorted by name. Prepared for the default method they have lost their views' lists, which make
+  // most of a model's bytes: what it needs of them stands below, in its own form.
   const std::vector<ObjectModel>& models() const { return models_; }
   // The method that it was prepared for.
   Method method() const { return method_; }
   // Of the models' features; empty when there are no models.
   const std::string& descriptor_kind() const { return descriptor_kind_; }
 
-  // All models' features in one list, which the index numbers.
-  struct FeatureOrigin {
+  // Where a feature of the index is on its model; object frame.
+  struct PlacedFeature : OrientedPoint {
     int model = 0;
-    int feature = 0;  // among the model's own, view after view
-    int view = 0;     // that it was seen in
+    int view = 0;  // that it was seen in
   };
-  // For the paper's method; absent otherwise.
-  const DescriptorIndex& descriptors() const { return *descriptors_; }
-  const FeatureOrigin& origin(int index) const { return origins_[index]; }
-  // A model's features, view after view.
-  const std::vector<const Feature*>& features(int model) const { return features_[model]; }
+  // All models' features in one list, which the indices number: model after model, view after view.
+  const PlacedFeature& feature(int index) const { return placed_features_[index]; }
+  // The number of a model's first feature in that list; for model = models().size() that of all.
+  int first_feature(int model) const { return first_features_[model]; }
 
-  // For the paper's method; empty otherwise.
+  // For the paper's method; absent or empty otherwise. features: of a model, in the list's order.
+  const DescriptorIndex& descriptors() const { return *descriptors_; }
+  const std::vector<const Feature*>& features(int model) const { return features_[model]; }
   const std::vector<CollisionShape>& collision_shapes() const { return collision_shapes_; }
 
-  // For the default method: the descriptors shortened for faster search, numbered as above, and the
-  // models as its stages want them.
+  // For the default method: the descriptors shortened for faster search, and the models as its
+  // stages want them.
   const DescriptorProjection& projection() const { return *projection_; }
   const DescriptorIndex& projected_descriptors() const { return *projected_descriptors_; }
   const std::vector<RankingModel>& ranking_models() const { return ranking_models_; }
   const std::vector<JudgedModel>& judged_models() const { return judged_models_; }
 
  private:
-  void ListFeatures();
-  void PreparePaperMethod(const PipelineParams& params);
-  void PrepareDefaultMethod(const PipelineParams& params);
+  void PrepareModels(const PipelineParams& params, const Execution& execution);
+  void PlaceFeatures();
+  void PreparePaperMethod(const PipelineParams& params, const Execution& execution);
+  void PrepareDefaultMethod(const PipelineParams& params, const Execution& execution);
+  std::vector<std::int16_t> ProjectedValues(const Execution& execution) const;
 
   Method method_;
   std::vector<ObjectModel> models_;
   std::string descriptor_kind_;
-  std::vector<FeatureOrigin> origins_;
+  std::vector<PlacedFeature> placed_features_;
+  std::vector<int> first_features_;
   std::vector<std::vector<const Feature*>> features_;  // point into models_
   std::unique_ptr<DescriptorIndex> descriptors_;
   std::vector<CollisionShape> collision_shapes_;

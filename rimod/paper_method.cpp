@@ -21,8 +21,10 @@ std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features
   std::vector<std::vector<Correspondence>> by_model(database.models().size());
   for (const Correspondence& match :
        MatchFeatures(features.features, database.descriptors(), params.matching, execution)) {
-    const ModelDatabase::FeatureOrigin& origin = database.origin(match.model_feature);
-    by_model[origin.model].push_back({match.scene_feature, origin.feature, match.distance});
+    const int model = database.feature(match.model_feature).model;
+    by_model[model].push_back({match.scene_feature,
+                               match.model_feature - database.first_feature(model),
+                               match.distance});
   }
   return by_model;
 }

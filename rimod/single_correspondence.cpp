@@ -5,7 +5,8 @@
 
 namespace rimod {
 
-std::optional<Eigen::Isometry3d> PoseFromCorrespondence(const Feature& scene, const Feature& model,
+std::optional<Eigen::Isometry3d> PoseFromCorrespondence(const OrientedPoint& scene,
+                                                        const OrientedPoint& model,
                                                         const Eigen::Vector3d& model_line_of_sight,
                                                         double max_vertical_cosine,
                                                         double min_normal_cosine) {
@@ -27,8 +28,9 @@ std::optional<Eigen::Isometry3d> PoseFromCorrespondence(const Feature& scene, co
 }
 
 std::optional<Eigen::Isometry3d> TiltedToNormal(const Eigen::Isometry3d& T_sensor_object,
-                                                const Feature& scene, const Feature& model,
-                                                double min_angle, double max_angle) {
+                                                const OrientedPoint& scene,
+                                                const OrientedPoint& model, double min_angle,
+                                                double max_angle) {
   const Eigen::Vector3d wanted = scene.normal.cast<double>();
   const Eigen::Vector3d normal = T_sensor_object.linear() * model.normal.cast<double>();
   const double angle = std::acos(std::clamp(normal.dot(wanted), -1.0, 1.0));

@@ -22,8 +22,8 @@ class FeatureSupportTest : public testing::Test {
 
   // The model's feature as the scene shows it at kPose, moved by offset (m, object frame).
   Feature SceneFeature(int model_feature, const Eigen::Vector3d& offset) const {
-    const Feature& model = *database_.features(0)[model_feature];
-    Feature feature = model;
+    const ModelDatabase::PlacedFeature& model = database_.feature(model_feature);
+    Feature feature;
     feature.position = (kPose * (model.position.cast<double>() + offset)).cast<float>();
     feature.normal = (kPose.linear() * model.normal.cast<double>()).cast<float>();
     return feature;
@@ -39,14 +39,13 @@ class FeatureSupportTest : public testing::Test {
 };
 
 TEST_F(FeatureSupportTest, CountsFeaturesInsideAndThoseThatMatchThere) {
-  ASSERT_GE(database_.features(0).size(), 4u);
+  ASSERT_GE(database_.first_feature(1), 4);
   FeatureSet features;
   features.features = {SceneFeature(0, {0, 0, 0}), SceneFeature(1, {0.01, 0.01, 0.01}),
                        SceneFeature(2, {0, 0, 0}), SceneFeature(3, {1.0, 0, 0})};
   // The third's match is of another place; the fourth lies outside, though its match fits itself.
   int far = 0;
-  while ((database_.features(0)[far]->position - database_.features(0)[2]->position).norm() < 0.2f)
-    ++far;
+  while ((database_.feature(far).position - database_.feature(2).position).norm() < 0.2f) ++far;
   const FeatureSupport support =
       Count(features, {{0, 2, 0.0}, {0, 0, 0.0}, {1, 1, 0.0}, {2, far, 0.0}, {3, 3, 0.0}});
   EXPECT_EQ(support.inside, 3);

@@ -41,6 +41,7 @@ void ExpectSame(const ModelDatabase& a, const ModelDatabase& b) {
     const int model = static_cast<int>(m);
     EXPECT_EQ(a.models()[m].name, b.models()[m].name);
     ASSERT_EQ(a.features(model).size(), b.features(model).size());
+    EXPECT_EQ(a.first_feature(model), b.first_feature(model));
     for (std::size_t f = 0; f < a.features(model).size(); ++f)
       EXPECT_EQ(a.features(model)[f]->descriptor, b.features(model)[f]->descriptor);
   }
@@ -67,8 +68,11 @@ TEST(ModelDatabaseTest, EveryDescriptorLeadsBackToItsFeature) {
   ASSERT_EQ(database.descriptors().size(), total);
   ASSERT_GT(total, 30);
   for (int i = 0; i < total; ++i) {
-    const ModelDatabase::FeatureOrigin& origin = database.origin(i);
-    const Feature& feature = *database.features(origin.model)[origin.feature];
+    const ModelDatabase::PlacedFeature& placed = database.feature(i);
+    const Feature& feature =
+        *database.features(placed.model)[i - database.first_feature(placed.model)];
+    EXPECT_EQ(placed.position, feature.position);
+    EXPECT_EQ(placed.normal, feature.normal);
     // The index holds this descriptor under this number.
     const std::vector<DescriptorMatch> same =
         database.descriptors().FindNear(feature.descriptor, total, 1e-6, total);
@@ -85,6 +89,9 @@ TEST(ModelDatabaseTest, FeaturesAreThoseOfTheViewsInOrder) {
       for (const Feature& feature : view.features) {
         ASSERT_LT(i, database.features(m).size());
         EXPECT_EQ(database.features(m)[i++], &feature);
+        const int view_number = static_cast<int>(&view - database.models()[m].views.data());
+        EXPECT_EQ(database.feature(database.first_feature(m) + static_cast<int>(i) - 1).view,
+                  view_number);
       }
     }
     EXPECT_EQ(i, database.features(m).size());
@@ -130,19 +137,29 @@ TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
   std::reverse(models.begin(), models.end());
   const ModelDatabase two(models, params, OnThreads(2));
   EXPECT_EQ(one.method(), Method::kDefault);
-  int total = 0;
+  std::sort(models.begin(), models.end(),
+            [](const ObjectModel& a, const ObjectModel& b) { return a.name < b.name; });
+  const int total = one.first_feature(3);
   for (int m = 0; m < 3; ++m) {
-    total += static_cast<int>(one.features(m).size());
-    EXPECT_EQ(one.ranking_models()[m].views.size(), one.models()[m].views.size());
+    ASSERT_EQ(one.ranking_models()[m].views.size(), models[m].views.size());
     EXPECT_EQ(&one.judged_models()[m].model(), &one.models()[m]);
+    for (std::size_t v = 0; v < models[m].views.size(); ++v) {
+      EXPECT_EQ(one.ranking_models()[m].views[v].surface.points,
+                models[m].views[v].validation_points);
+      EXPECT_EQ(one.models()[m].views[v].viewpoint, models[m].views[v].viewpoint);
+    }
   }
   ASSERT_EQ(one.projected_descriptors().size(), total);
   ASSERT_EQ(two.projected_descriptors().size(), total);
+  std::vector<const Feature*> features;
+  for (const ObjectModel& model : models)
+    for (const ModelView& view : model.views)
+      for (const Feature& feature : view.features) features.push_back(&feature);
+  ASSERT_EQ(static_cast<int>(features.size()), total);
   for (int i = 0; i < total; ++i) {
-    const ModelDatabase::FeatureOrigin& origin = one.origin(i);
-    const Feature& feature = *one.features(origin.model)[origin.feature];
-    const std::vector<Feature>& seen = one.models()[origin.model].views[origin.view].features;
-    EXPECT_TRUE(&feature >= seen.data() && &feature < seen.data() + seen.size());
+    const Feature& feature = *features[i];
+    EXPECT_EQ(one.feature(i).position, feature.position);
+    EXPECT_EQ(one.feature(i).normal, feature.normal);
     const Descriptor projected = one.projection().Project(feature.descriptor);
     EXPECT_EQ(projected.size(), 7u);
     EXPECT_EQ(projected, two.projection().Project(feature.descriptor));
@@ -151,6 +168,16 @@ TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
     EXPECT_TRUE(std::any_of(same.begin(), same.end(),
                             [i](const DescriptorMatch& match) { return match.index == i; }));
   }
+}
+
+TEST(ModelDatabaseTest, TheDefaultMethodKeepsNoLongDescriptors) {
+  PipelineParams params = Params();
+  params.method = Method::kDefault;
+  const ModelDatabase database(ThreeModels(), params, Execution{});
+  for (const ObjectModel& model : database.models())
+    for (const ModelView& view : model.views)
+      EXPECT_TRUE(view.features.empty() && view.validation_points.empty() &&
+                  view.outside_points.empty());
 }
 
 TEST(ModelDatabaseTest, RefusesTwoModelsOfOneName) {
