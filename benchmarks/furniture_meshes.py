@@ -8,7 +8,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / 'experiments'))
 import make_scenes  # noqa: E402  (shapes of primitives, and the reader of the catalogues)
 
-SMALLEST, LARGEST = 0.3, 2.5  # m, largest edge of a catalogue piece that is used
+SMALLEST, LARGEST = 0.3, 1.5  # m, largest edge of a catalogue piece that is used
 CORNERS = 24  # of the polygon that stands for a circle
 
 

@@ -128,11 +128,11 @@ void TellOtherParams(const std::vector<ObjectModel>& models, const PipelineParam
 
 int RunDetect(const DetectOptions& options, const Configuration& configuration, std::ostream& out) {
   const PipelineParams& params = configuration.pipeline;
-  ModelFolder folder = LoadModelFolder(options.models);
+  ThreadPool pool(options.num_threads);
+  ModelFolder folder = LoadModelFolder(options.models, pool.MakeExecution());
   bool good = ReportFolder(options.models, folder);
   if (!folder.error.empty()) return kInputFailed;
 
-  ThreadPool pool(options.num_threads);
   TellOtherParams(folder.models, params);
   const ModelDatabase database(std::move(folder.models), params, pool.MakeExecution());
   Detector detector(database, params, pool.MakeExecution(), &out);

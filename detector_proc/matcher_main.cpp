@@ -8,6 +8,7 @@
 #include "io/bus_setup.h"
 #include "io/model_file.h"
 #include "io/process_options.h"
+#include "io/thread_pool.h"
 
 int main(int argc, char** argv) {
   const rimod::StopOnSignal signals;
@@ -32,7 +33,10 @@ int main(int argc, char** argv) {
   rimod::LogToStderr(app.get_name());
 
   rimod::ModelFolder folder;
-  if (!models.empty()) folder = rimod::LoadModelFolder(models);
+  if (!models.empty()) {
+    rimod::ThreadPool pool(num_threads);
+    folder = rimod::LoadModelFolder(models, pool.MakeExecution());
+  }
   for (const std::string& error : folder.bad_files) spdlog::error("{}", error);
   if (!folder.error.empty()) {
     spdlog::error("{}", folder.error);
@@ -43,6 +47,6 @@ int main(int argc, char** argv) {
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
   rimod::MatcherProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
-                                num_threads, std::move(folder.models));
+                                num_threads, models, std::move(folder.models));
   return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
 }

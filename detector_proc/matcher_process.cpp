@@ -1,12 +1,15 @@
 #include "detector_proc/matcher_process.h"
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "io/detection_messages.h"
 #include "io/feature_messages.h"
+#include "io/model_file.h"
 #include "io/model_messages.h"
 #include "io/range_image_messages.h"
 #include "io/stage_timer.h"
@@ -31,20 +34,18 @@ std::chrono::milliseconds PatienceOf(const BusParams& params) {
 
 MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                                const Configuration& configuration, int num_threads,
-                               std::vector<ObjectModel> models)
+                               std::string models_folder, std::vector<ObjectModel> models)
     : channels_(channels),
       params_(configuration.pipeline),
+      models_folder_(std::move(models_folder)),
       pool_(num_threads),
       image_joiner_(JoinerParamsFrom(configuration.bus)),
       feature_joiner_(JoinerParamsFrom(configuration.bus)),
       model_joiner_(JoinerParamsFrom(configuration.bus)),
       partners_(PatienceOf(configuration.bus)),
       status_(out, channels.status, "rimod-matcher"),
-      publisher_(out, configuration.bus) {
-  for (ObjectModel& model : models) {
-    const std::string name = model.name;
-    new_models_.insert_or_assign(name, std::move(model));
-  }
+      publisher_(out, configuration.bus),
+      first_models_(std::move(models)) {
   worker_ = std::make_unique<NewestWorker<DescribedScan>>(
       configuration.bus.max_waiting_scans, [this] { RebuildDatabase(); },
       [this](const DescribedScan& scan) { Work(scan); });
@@ -104,26 +105,46 @@ void MatcherProcess::Give(std::optional<DescribedScan> scan) {
   if (scan) status_.CountDropped("scans overtaken", worker_->Give(std::move(*scan)));
 }
 
+// The models of the folder: those that were read at the start, then as they are there now.
+std::vector<ObjectModel> MatcherProcess::ModelsOfFolder(const Execution& execution) {
+  if (first_models_) {
+    std::vector<ObjectModel> models = std::move(*first_models_);
+    first_models_.reset();
+    return models;
+  }
+  if (models_folder_.empty()) return {};
+  ModelFolder folder = LoadModelFolder(models_folder_, execution);
+  if (!folder.error.empty()) folder.bad_files.push_back(folder.error);
+  for (const std::string& error : folder.bad_files) status_.ReportError(error, error);
+  return std::move(folder.models);
+}
+
 void MatcherProcess::RebuildDatabase() try {
-  std::map<std::string, ObjectModel> models;
+  std::map<std::string, ObjectModel> bus_models;
   {
     const std::lock_guard<std::mutex> lock(new_models_mutex_);
     if (new_models_.empty() && database_) return;
-    models.swap(new_models_);
+    bus_models.swap(new_models_);
   }
-  models.merge(models_);  // keeps the new one of two of one name
-  if (models.size() > kMaxModels) {
+  bus_models.merge(std::map<std::string, ObjectModel>(bus_models_));  // keeps the new of one name
+  const Execution execution = StoppableExecution(pool_.MakeExecution(), &stop_);
+  const auto begin = Clock::now();
+  std::vector<ObjectModel> models = ModelsOfFolder(execution);
+  models.erase(
+      std::remove_if(models.begin(), models.end(),
+                     [&](const ObjectModel& model) { return bus_models.count(model.name); }),
+      models.end());
+  if (models.size() + bus_models.size() > kMaxModels) {
     status_.CountDropped("models failed");
     return status_.ReportError("models", "more models than can be kept: the new ones are left out");
   }
-  std::vector<ObjectModel> list;
-  for (const auto& [name, model] : models) list.push_back(model);
-  const Execution execution = StoppableExecution(pool_.MakeExecution(), &stop_);
-  const auto begin = Clock::now();
-  database_.emplace(std::move(list), params_, execution);
-  models_ = std::move(models);
+  for (const auto& [name, model] : bus_models) models.push_back(model);
+  database_.emplace(std::move(models), params_, execution);
+  bus_models_ = std::move(bus_models);
+  malloc_trim(0);  // what was read and is not needed any more goes back to the system
   const std::chrono::duration<double, std::milli> elapsed = Clock::now() - begin;
-  spdlog::info("looking for {} models; index built in {:.0f} ms", models_.size(), elapsed.count());
+  spdlog::info("looking for {} models; index built in {:.0f} ms", database_->models().size(),
+               elapsed.count());
 } catch (const Stopped&) {
   // The process ends.
 } catch (const std::exception& error) {
@@ -159,7 +180,7 @@ void MatcherProcess::Publish(const DescribedScan& scan, const DetectionResult& r
   StampedDetections detections;
   detections.utime = scan.utime;
   detections.T_local_sensor = scan.image.T_local_sensor();
-  detections.num_models = static_cast<int>(models_.size());
+  detections.num_models = static_cast<int>(database_->models().size());
   detections.detections = result.detections;
   detections.stage_times = times;
   publisher_.Publish(channels_.detections, ToMessage(detections));

@@ -30,9 +30,10 @@ namespace rimod {
 class MatcherProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
-  // 0 for as many as the machine has.
+  // 0 for as many as the machine has. models: those of the folder (may be empty: none), which is
+  // read again when models come over the bus: keeping them for that would double the memory.
   MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                 const Configuration& configuration, int num_threads,
+                 const Configuration& configuration, int num_threads, std::string models_folder,
                  std::vector<ObjectModel> models);
   // Breaks off the computation at hand.
   ~MatcherProcess();
@@ -48,11 +49,13 @@ class MatcherProcess {
 
   // In the worker's thread:
   void RebuildDatabase();
+  std::vector<ObjectModel> ModelsOfFolder(const Execution& execution);
   void Work(const DescribedScan& scan);
   void Publish(const DescribedScan& scan, const DetectionResult& result, const StageTimes& times);
 
   const Channels channels_;
   const PipelineParams params_;
+  const std::string models_folder_;
   std::atomic<bool> stop_{false};
   ThreadPool pool_;
   SectionJoiner<range_image_t> image_joiner_;
@@ -66,7 +69,8 @@ class MatcherProcess {
   std::map<std::string, ObjectModel> new_models_;  // by name; not in the database yet
 
   // Of the worker's thread:
-  std::map<std::string, ObjectModel> models_;  // by name
+  std::optional<std::vector<ObjectModel>> first_models_;  // the folder's, as read at the start
+  std::map<std::string, ObjectModel> bus_models_;         // by name; they replace the folder's
   std::optional<ModelDatabase> database_;
 
   std::unique_ptr<NewestWorker<DescribedScan>> worker_;

@@ -121,13 +121,17 @@ std::string WriteModelFile(const std::string& path, const ObjectModel& model) {
   }
 }
 
-ModelFolder LoadModelFolder(const std::string& folder) {
+ModelFolder LoadModelFolder(const std::string& folder, const Execution& execution) {
   ModelFolder loaded;
   const FolderListing listing = ListFolder(folder, "", ".rimod");
   loaded.error = listing.error;
+  std::vector<ModelFileResult> files(listing.paths.size());
+  execution.parallel_for(files.size(),
+                         [&](std::size_t i) { files[i] = ReadModelFile(listing.paths[i]); });
   std::set<std::string> names;
-  for (const std::string& path : listing.paths) {
-    ModelFileResult file = ReadModelFile(path);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& path = listing.paths[i];
+    ModelFileResult& file = files[i];
     if (!file.model) {
       loaded.bad_files.push_back(file.error);
     } else if (!names.insert(file.model->name).second) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "rimod/execution.h"
 #include "rimod/object_model.h"
 
 namespace rimod {
@@ -38,6 +39,6 @@ struct ModelFolder {
 };
 
 // Every *.rimod in the folder, sorted by file name. Of two models with one name the second is bad.
-ModelFolder LoadModelFolder(const std::string& folder);
+ModelFolder LoadModelFolder(const std::string& folder, const Execution& execution = {});
 
 }  // namespace rimod

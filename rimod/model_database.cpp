@@ -78,32 +78,26 @@ void ModelDatabase::PreparePaperMethod(const PipelineParams& params, const Execu
 void ModelDatabase::PrepareDefaultMethod(const PipelineParams& params, const Execution& execution) {
   projection_ = std::make_unique<DescriptorProjection>(Descriptors(models_),
                                                        params.matching.projected_dimensions);
-  std::vector<std::int16_t> projected = ProjectedValues(execution);
+  const std::size_t size = static_cast<std::size_t>(projection_->dimensions());
+  std::vector<std::int16_t> projected(placed_features_.size() * size);
   ranking_models_.resize(models_.size());
   std::vector<std::optional<JudgedModel>> judged(models_.size());
   execution.parallel_for(models_.size(), [&](std::size_t m) {
-    ranking_models_[m] = MakeRankingModel(models_[m]);
-    judged[m].emplace(models_[m]);
-    for (ModelView& view : models_[m].views) FreeLists(&view);
+    ObjectModel& model = models_[m];
+    auto out = projected.begin() + static_cast<std::ptrdiff_t>(first_features_[m] * size);
+    for (const ModelView& view : model.views) {
+      for (const Feature& feature : view.features) {
+        const Descriptor values = projection_->Project(feature.descriptor);
+        out = std::copy(values.begin(), values.end(), out);
+      }
+    }
+    ranking_models_[m] = MakeRankingModel(model);
+    for (ModelView& view : model.views) FreeLists(&view);
+    judged[m].emplace(model);
   });
   for (std::optional<JudgedModel>& model : judged) judged_models_.push_back(std::move(*model));
   projected_descriptors_ = std::make_unique<DescriptorIndex>(
-      std::move(projected), std::max(projection_->dimensions(), 1), execution);
-}
-
-std::vector<std::int16_t> ModelDatabase::ProjectedValues(const Execution& execution) const {
-  const std::size_t size = static_cast<std::size_t>(projection_->dimensions());
-  std::vector<std::int16_t> values(placed_features_.size() * size);
-  execution.parallel_for(models_.size(), [&](std::size_t m) {
-    auto out = values.begin() + static_cast<std::ptrdiff_t>(first_features_[m] * size);
-    for (const ModelView& view : models_[m].views) {
-      for (const Feature& feature : view.features) {
-        const Descriptor projected = projection_->Project(feature.descriptor);
-        out = std::copy(projected.begin(), projected.end(), out);
-      }
-    }
-  });
-  return values;
+      std::move(projected), std::max(static_cast<int>(size), 1), execution);
 }
 
 }  // namespace rimod

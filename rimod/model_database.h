@@ -60,7 +60,6 @@ class ModelDatabase {
   void PlaceFeatures();
   void PreparePaperMethod(const PipelineParams& params, const Execution& execution);
   void PrepareDefaultMethod(const PipelineParams& params, const Execution& execution);
-  std::vector<std::int16_t> ProjectedValues(const Execution& execution) const;
 
   Method method_;
   std::vector<ObjectModel> models_;

@@ -1,6 +1,5 @@
 #include "rimod/surface_thinning.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +7,10 @@
 namespace rimod {
 namespace {
 
-using Cell = std::array<std::int64_t, 3>;
+struct Cell {
+  std::int64_t x, y, z;
+  bool operator==(const Cell& other) const { return x == other.x && y == other.y && z == other.z; }
+};
 
 Cell CellOf(const Eigen::Vector3f& point, double spacing) {
   const Eigen::Vector3d cell = point.cast<double>() / spacing;
@@ -45,7 +47,8 @@ class KeptPoints {
   static std::size_t Hash(const Cell& cell) {
     constexpr std::uint64_t kMixing = 0x9E3779B97F4A7C15u;  // golden ratio times 2^64
     std::uint64_t hash = 0;
-    for (const std::int64_t c : cell) hash = (hash ^ static_cast<std::uint64_t>(c)) * kMixing;
+    for (const std::int64_t c : {cell.x, cell.y, cell.z})
+      hash = (hash ^ static_cast<std::uint64_t>(c)) * kMixing;
     return static_cast<std::size_t>(hash >> 32);
   }
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "tests/io/random_values.h"
+#include "tests/support/executions.h"
 
 namespace rimod {
 namespace {
@@ -167,6 +169,56 @@ TEST(DescriptorIndexTest, EqualInputGivesEqualAnswers) {
       EXPECT_EQ(a[k].distance, b[k].distance);
     }
   }
+}
+
+TEST(DescriptorIndexTest, IsTheSameOnAnyThreadsAndFromOneList) {
+  const int size = 6, count = 3000;  // more pieces than are built level by level
+  const std::vector<Descriptor> descriptors = RandomDescriptors(count, size, 13);
+  std::vector<std::int16_t> values;
+  for (const Descriptor& descriptor : descriptors)
+    values.insert(values.end(), descriptor.begin(), descriptor.end());
+  const DescriptorIndex expected(Pointers(descriptors));
+  const DescriptorIndex threaded(values, size, OnThreads(3));
+  const DescriptorIndex backwards(values, size, Backwards());
+  RandomValues random(14);
+  for (int i = 0; i < 50; ++i) {
+    const Descriptor query = RandomDescriptor(&random, size);
+    const auto found = expected.FindNear(query, 10, kAnyDistance, 100);
+    for (const DescriptorIndex* other : {&threaded, &backwards}) {
+      const auto same = other->FindNear(query, 10, kAnyDistance, 100);
+      ASSERT_EQ(same.size(), found.size());
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        EXPECT_EQ(same[k].index, found[k].index);
+        EXPECT_EQ(same[k].distance, found[k].distance);
+      }
+    }
+  }
+}
+
+TEST(DescriptorIndexTest, EveryValueStandsForTheNearestFloatInMetres) {
+  for (int value = -32767; value <= 32767; ++value) {
+    const Descriptor descriptor{static_cast<std::int16_t>(value)};
+    const auto found = DescriptorIndex({&descriptor}).FindNear({0}, 1, kAnyDistance, 1);
+    ASSERT_EQ(found.size(), 1u);
+    const float metres = static_cast<float>(value * kDescriptorUnit);
+    ASSERT_EQ(found[0].distance, std::sqrt(static_cast<double>(metres * metres))) << value;
+  }
+}
+
+TEST(DescriptorIndexTest, ExtremeValuesAreComparedToo) {
+  const std::vector<Descriptor> descriptors = {Descriptor(16, -32767), Descriptor(16, 32767),
+                                               Descriptor(16, 0)};
+  const DescriptorIndex index(Pointers(descriptors));
+  const auto found = index.FindNear(Descriptor(16, 32766), 3, kAnyDistance, 3);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].index, 1);
+  EXPECT_EQ(found[1].index, 2);
+  EXPECT_NEAR(found[2].distance, 6.5533, 1e-5);
+}
+
+TEST(DescriptorIndexTest, RefusesValuesThatMakeNoWholeDescriptors) {
+  EXPECT_THROW(DescriptorIndex({1, 2, 3}, 2, Execution{}), std::invalid_argument);
+  EXPECT_THROW(DescriptorIndex(std::vector<std::int16_t>(), 0, Execution{}), std::invalid_argument);
 }
 
 TEST(DescriptorIndexTest, TiesAreInOrderOfIndex) {
