@@ -15,12 +15,13 @@ packages=(
   # tests and demo
   libgtest-dev libbenchmark-dev iproute2 util-linux xvfb
 )
-checks=(clang-format clang-tidy ccache)
+checks=(clang-format clang-tidy ccache valgrind)
 
 usage() {
   cat <<'END'
 usage: ./setup.sh [--checks] [--print]
-  --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, ccache
+  --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, ccache,
+            valgrind
   --print   print the packages, one a line, and install nothing
 END
 }

@@ -1,6 +1,7 @@
 #include "io/model_messages.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "io/feature_messages.h"
@@ -203,36 +204,36 @@ void AppendSection(const object_model_t& s, ObjectModel* model, JoinedLists* lis
     lists->outside_points.emplace_back(s.outside_x[i], s.outside_y[i], s.outside_z[i]);
 }
 
-// The next count entries of a list, or false when it has fewer left.
+// Moves the next count entries out of a list; false when it has fewer left.
 template <typename T>
-bool TakeNext(const std::vector<T>& list, std::int32_t count, std::size_t* next,
-              std::vector<T>* taken) {
-  if (count < 0 || static_cast<std::size_t>(count) > list.size() - *next) return false;
-  const auto begin = list.begin() + static_cast<std::ptrdiff_t>(*next);
+bool TakeNext(std::vector<T>* list, std::int32_t count, std::size_t* next, std::vector<T>* taken) {
+  if (count < 0 || static_cast<std::size_t>(count) > list->size() - *next) return false;
+  const auto begin = std::make_move_iterator(list->begin() + static_cast<std::ptrdiff_t>(*next));
   taken->assign(begin, begin + count);
   *next += static_cast<std::size_t>(count);
   return true;
 }
 
 // Hands the features and points out to their views. Returns an error text.
-std::string FillViews(const JoinedLists& lists, ObjectModel* model) {
+std::string FillViews(JoinedLists* lists, ObjectModel* model) {
   std::size_t next_feature = 0, next_point = 0, next_normal = 0, next_outside = 0;
-  for (const model_view_t& message : lists.views) {
+  model->views.reserve(lists->views.size());
+  for (const model_view_t& message : lists->views) {
     ModelView view;
     view.viewpoint = Eigen::Vector3d(message.viewpoint);
     const std::int32_t num_points = message.num_validation_points;
-    if (!TakeNext(lists.features, message.num_features, &next_feature, &view.features) ||
-        !TakeNext(lists.validation_points, num_points, &next_point, &view.validation_points) ||
-        !TakeNext(lists.validation_normals, num_points, &next_normal, &view.validation_normals) ||
-        !TakeNext(lists.outside_points, message.num_outside_points, &next_outside,
+    if (!TakeNext(&lists->features, message.num_features, &next_feature, &view.features) ||
+        !TakeNext(&lists->validation_points, num_points, &next_point, &view.validation_points) ||
+        !TakeNext(&lists->validation_normals, num_points, &next_normal, &view.validation_normals) ||
+        !TakeNext(&lists->outside_points, message.num_outside_points, &next_outside,
                   &view.outside_points)) {
       return "a view counts features or points that are not there";
     }
     model->views.push_back(std::move(view));
   }
-  const bool all_used = next_feature == lists.features.size() &&
-                        next_point == lists.validation_points.size() &&
-                        next_outside == lists.outside_points.size();
+  const bool all_used = next_feature == lists->features.size() &&
+                        next_point == lists->validation_points.size() &&
+                        next_outside == lists->outside_points.size();
   return all_used ? "" : "features or points that belong to no view";
 }
 
@@ -283,11 +284,15 @@ JoinedModel JoinModelSections(const std::vector<object_model_t>& sections) {
   model.descriptor_kind = first.descriptor;
   model.descriptor_size = first.descriptor_size;
   JoinedLists lists;
+  std::size_t num_points = 0;
+  for (const object_model_t* const section : ordered) num_points += section->x.size();
+  model.points.reserve(num_points);
+  model.normals.reserve(num_points);
   for (const object_model_t* const section : ordered) {
     if (!CountsFit(*section)) return {std::nullopt, "a count does not fit its list"};
     AppendSection(*section, &model, &lists);
   }
-  error = FillViews(lists, &model);
+  error = FillViews(&lists, &model);
   if (!error.empty()) return {std::nullopt, std::move(error)};
   try {
     ValidateModel(model);

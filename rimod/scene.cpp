@@ -65,6 +65,7 @@ Eigen::Vector3f NormalOf(const RangeImage& image, int row, int column, float rad
 }  // namespace
 
 PointColumns::PointColumns(const std::vector<Eigen::Vector3f>& points) {
+  for (std::vector<float>* const column : {&x, &y, &z}) column->reserve(points.size());
   for (const Eigen::Vector3f& point : points) Add(point);
 }
 
