@@ -20,11 +20,9 @@ void SetHandler(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-constexpr auto kIdlePeriod = std::chrono::milliseconds(50);
-
 // Handles what waits, but for no longer than an idle period.
-void Drain(lcm::LCM* lcm, const std::atomic<bool>& stop) {
-  const auto end = std::chrono::steady_clock::now() + kIdlePeriod;
+void Drain(lcm::LCM* lcm, const std::atomic<bool>& stop, std::chrono::milliseconds idle_period) {
+  const auto end = std::chrono::steady_clock::now() + idle_period;
   while (!stop && std::chrono::steady_clock::now() < end && lcm->handleTimeout(0) > 0) {
   }
 }
@@ -44,21 +42,23 @@ StopOnSignal::~StopOnSignal() {
 
 const std::atomic<bool>& StopOnSignal::stop() const { return stop_requested; }
 
-bool RunBus(lcm::LCM* lcm, const std::atomic<bool>& stop, const std::function<void()>& on_idle) {
-  constexpr int kMaxFailures = 40;  // in a row, an idle period each: two seconds
+bool RunBus(lcm::LCM* lcm, const std::atomic<bool>& stop, const std::function<void()>& on_idle,
+            std::chrono::milliseconds idle_period) {
+  constexpr auto kFailurePause = std::chrono::milliseconds(50);
+  constexpr int kMaxFailures = 40;  // in a row, a pause each: two seconds
   int num_failures = 0;
   while (!stop) {
     errno = 0;
-    const int handled = lcm->handleTimeout(static_cast<int>(kIdlePeriod.count()));
+    const int handled = lcm->handleTimeout(static_cast<int>(idle_period.count()));
     if (handled > 0) {
       num_failures = 0;
-      Drain(lcm, stop);
+      Drain(lcm, stop, idle_period);
     } else if (handled == 0 || errno == EINTR) {
       num_failures = 0;
     } else if (++num_failures > kMaxFailures) {
       return false;
     } else {
-      std::this_thread::sleep_for(kIdlePeriod);
+      std::this_thread::sleep_for(kFailurePause);
     }
     on_idle();
   }

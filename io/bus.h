@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 
@@ -19,8 +20,9 @@ class StopOnSignal {
 };
 
 // Handles messages until stop is set: waits for some, handles all that wait, calls on_idle, which
-// happens at least twenty times a second. Returns true when stopped, false when LCM fails again and
-// again (a closed log, a vanished network).
-bool RunBus(lcm::LCM* lcm, const std::atomic<bool>& stop, const std::function<void()>& on_idle);
+// happens once in an idle period at least. Returns true when stopped, false when LCM fails again
+// and again (a closed log, a vanished network).
+bool RunBus(lcm::LCM* lcm, const std::atomic<bool>& stop, const std::function<void()>& on_idle,
+            std::chrono::milliseconds idle_period = std::chrono::milliseconds(50));
 
 }  // namespace rimod

@@ -24,5 +24,9 @@ int main(int argc, char** argv) {
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
   rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration);
-  return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
+  constexpr auto kIdlePeriod =
+      std::chrono::milliseconds(10);  // the end of a sweep is seen late by that
+  const bool stopped = rimod::RunBus(
+      lcm, signals.stop(), [&process] { process.OnIdle(); }, kIdlePeriod);
+  return stopped ? 0 : 1;
 }

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "io/laser_messages.h"
@@ -24,6 +25,7 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
                                    const Configuration& configuration)
     : scan_channel_(channels.scan),
       idle_time_(configuration.bus.idle_time),
+      quiet_time_(configuration.bus.quiet_time),
       assembler_(configuration.pipeline.sweep),
       last_input_(Clock::now()),
       status_(out, channels.status, "rimod-assembler"),
@@ -39,21 +41,37 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
 std::string AssemblerProcess::OnLine(const bot_core::planar_lidar_t& message) {
   LaserLineFromMessage line = FromMessage(message);
   if (!line.line) return line.error;
-  last_input_ = Clock::now();
+  NoteInput();
   const std::vector<Sweep> sweeps = assembler_.AddLine(std::move(*line.line));
   assembly_time_ += Clock::now() - last_input_;
-  Publish(sweeps);
+  PublishEnded(sweeps);
   return "";
 }
 
 std::string AssemblerProcess::OnPose(const bot_core::rigid_transform_t& message) {
   const TimedPoseFromMessage pose = FromMessage(message);
   if (!pose.pose) return pose.error;
-  last_input_ = Clock::now();
+  NoteInput();
   const std::vector<Sweep> sweeps = assembler_.AddPose(*pose.pose);
   assembly_time_ += Clock::now() - last_input_;
-  Publish(sweeps);
+  PublishEnded(sweeps);
   return "";
+}
+
+void AssemblerProcess::NoteInput() {
+  const auto now = Clock::now();
+  longest_gap_ =
+      assembler_.collecting() ? std::max(longest_gap_, now - last_input_) : Clock::duration{0};
+  last_input_ = now;
+  looked_ = false;
+}
+
+// A machine that delivers lines late may pause in the midst of a sweep: a gap much longer than any
+// before is needed.
+bool AssemblerProcess::LinesStopped() const {
+  constexpr int kLongerThanAnyGap = 3;
+  const auto quiet = Clock::now() - last_input_;
+  return quiet > quiet_time_ && quiet > kLongerThanAnyGap * longest_gap_;
 }
 
 void AssemblerProcess::OnIdle() {
@@ -61,29 +79,50 @@ void AssemblerProcess::OnIdle() {
     const auto begin = Clock::now();
     const std::vector<Sweep> sweeps = assembler_.Finish();
     assembly_time_ += Clock::now() - begin;
-    Publish(sweeps);
+    PublishEnded(sweeps);
+  } else if (assembler_.collecting() && !looked_ && LinesStopped()) {
+    looked_ = true;
+    PublishUnended();
   }
   ReportCounters();
   status_.PublishIfDue();
 }
 
-void AssemblerProcess::Publish(const std::vector<Sweep>& sweeps) {
+void AssemblerProcess::PublishEnded(const std::vector<Sweep>& sweeps) {
   for (const Sweep& sweep : sweeps) {
-    if (!sweep.complete()) {
+    if (sweep.complete()) {
+      PublishScan(sweep);
+    } else {
       status_.CountDropped("incomplete sweeps");
       status_.ReportError("incomplete: " + sweep.incomplete_reason,
                           "sweep of " + std::to_string(sweep.num_lines) +
                               " lines left out: " + sweep.incomplete_reason);
-      continue;
     }
-    publisher_.PublishAll(scan_channel_, ToSections(ToStampedScan(sweep)));
-    status_.CountOut();
-    const std::chrono::duration<double, std::milli> elapsed = assembly_time_;
-    status_.AddStageTimes({{"assembly", elapsed.count()}});
-    spdlog::info("scan {}: {} lines, {} points", sweep.begin.count(), sweep.num_lines,
-                 sweep.scan.points.size());
+    sent_.reset();
   }
-  if (!sweeps.empty()) assembly_time_ = Clock::duration{0};
+  if (sweeps.empty()) return;
+  assembly_time_ = Clock::duration{0};
+  longest_gap_ = Clock::duration{0};
+}
+
+// The scan that it would be if nothing more came.
+void AssemblerProcess::PublishUnended() {
+  SweepAssembler ended = assembler_;
+  for (const Sweep& sweep : ended.Finish())
+    if (sweep.complete()) PublishScan(sweep);
+}
+
+void AssemblerProcess::PublishScan(const Sweep& sweep) {
+  if (sent_ && sent_->begin == sweep.begin && sent_->end == sweep.end &&
+      sent_->num_lines == sweep.num_lines)
+    return;
+  sent_ = SentScan{sweep.begin, sweep.end, sweep.num_lines};
+  publisher_.PublishAll(scan_channel_, ToSections(ToStampedScan(sweep)));
+  status_.CountOut();
+  const std::chrono::duration<double, std::milli> elapsed = assembly_time_;
+  status_.AddStageTimes({{"assembly", elapsed.count()}});
+  spdlog::info("scan {}: {} lines, {} points", sweep.begin.count(), sweep.num_lines,
+               sweep.scan.points.size());
 }
 
 void AssemblerProcess::ReportCounters() {

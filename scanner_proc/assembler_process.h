@@ -3,6 +3,7 @@
 #include <chrono>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,34 @@ class AssemblerProcess {
   AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                    const Configuration& configuration);
 
-  // To be called many times a second: ends a sweep when nothing comes any more, reports.
+  // To be called many times a second: sends the scan of a sweep as soon as its lines stop, ends the
+  // sweep when nothing comes any more, reports.
   void OnIdle();
 
  private:
   std::string OnLine(const bot_core::planar_lidar_t& message);
   std::string OnPose(const bot_core::rigid_transform_t& message);
-  void Publish(const std::vector<Sweep>& sweeps);
+  void NoteInput();
+  bool LinesStopped() const;
+  void PublishEnded(const std::vector<Sweep>& sweeps);
+  void PublishUnended();
+  void PublishScan(const Sweep& sweep);
   void ReportCounters();
 
   using Clock = std::chrono::steady_clock;
+  struct SentScan {
+    Time begin, end;
+    int num_lines = 0;
+  };
 
   const std::string scan_channel_;
-  const std::chrono::duration<double> idle_time_;
+  const std::chrono::duration<double> idle_time_, quiet_time_;
   SweepAssembler assembler_;
   Clock::duration assembly_time_{0};  // spent on the sweep at hand
   Clock::time_point last_input_;
+  Clock::duration longest_gap_{0};  // between inputs of the sweep at hand
+  bool looked_ = false;             // at the sweep at hand since the last input
+  std::optional<SentScan> sent_;    // of the sweep at hand, before its end
   StatusReporter status_;
   PacedPublisher publisher_;
   std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;

@@ -174,6 +174,37 @@ TEST_F(PipelineLifeTest, RenamedChannelsAreUsed) {
   EXPECT_TRUE(bus_.Bytes("RIMOD_SCAN").empty());
 }
 
+// Nothing tells the end of this sweep but that its lines stop.
+TEST_F(PipelineLifeTest, AScanIsSentWhenItsLinesStopAndAgainWhenTheyGoOn) {
+  const auto assembler =
+      Start("rimod-assembler", {"--config", folder_.Write("patient.yaml",
+                                                          "bus:\n  idle_time: 3600\nsweep:\n"
+                                                          "  min_sweep_angle_deg: 1\n"
+                                                          "  max_pose_gap: 10\n")});
+  const TiltingLaser laser = TiltInFrontOf(SmallRoom(), Time(1'000'000'000), 60);
+  constexpr std::size_t kFirst = 40;
+  const auto publish = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      bus_.Publish("LASER_TO_LOCAL", laser.poses[i]);
+      if (i < laser.lines.size()) bus_.Publish("LASER", laser.lines[i]);
+      bus_.Listen(milliseconds(2));
+    }
+  };
+  const auto lines_sent = [&] {
+    const auto sections = bus_.Messages<scan_t>("RIMOD_SCAN");
+    return sections.empty() ? 0 : sections.back().num_lines;
+  };
+  publish(0, kFirst);
+  EXPECT_TRUE(bus_.ListenUntil([&] { return lines_sent() == kFirst - 1; }, kLong));
+  publish(kFirst, laser.poses.size());
+  EXPECT_TRUE(bus_.ListenUntil([&] { return lines_sent() == 60; }, kLong));
+  bus_.Listen(milliseconds(500));
+  bus_.Forget();
+  bus_.Listen(milliseconds(1000));
+  EXPECT_EQ(lines_sent(), 0) << "was sent again, though nothing came";
+  EXPECT_EQ(bus_.Status("rimod-assembler").value().num_dropped, 0);
+}
+
 TEST_F(PipelineLifeTest, LinesWithoutPosesAreCountedAndPosesAloneAreNoSweep) {
   const auto assembler = Start("rimod-assembler", {"--config", QuickConfig()});
   const TiltingLaser laser = TiltInFrontOf(SmallRoom(), Time(1'000'000'000), 60);
