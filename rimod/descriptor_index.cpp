@@ -30,9 +30,10 @@ struct Branch {
   }
 };
 
-bool Nearer(const DescriptorMatch& a, const DescriptorMatch& b) {
+// A lambda, not a function: the heaps' loops have it inlined.
+constexpr auto Nearer = [](const DescriptorMatch& a, const DescriptorMatch& b) {
   return a.distance != b.distance ? a.distance < b.distance : a.index < b.index;
-}
+};
 
 // Nodes of the tree over so many descriptors. Halving gives pieces of two sizes at each level.
 int NumNodes(int count) {
@@ -100,6 +101,7 @@ DescriptorIndex::DescriptorIndex(std::vector<std::int16_t> values, int size,
     for (std::size_t i = 0; i < count; ++i)
       std::copy_n(&values[i * size_], size_, &values_[i * stride_]);
   }
+  has_empty_cells_ = std::find(values_.begin(), values_.end(), kEmptyCell) != values_.end();
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0);
   if (count > 0) Build(execution);
@@ -216,13 +218,18 @@ float DescriptorIndex::RoughSumSq(const Query& query, int place) const {
   const std::int16_t* const values = ValuesAt(place);
   const std::int32_t* const steps = query.steps.data();
   float sums[kLanes] = {};
-  for (int d = 0; d < stride_; d += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const std::int16_t value = values[d + lane];
-      const float difference =
-          static_cast<float>(steps[d + lane] - (value == kEmptyCell ? 0 : value));
-      sums[lane] += difference * difference;
+  const auto add = [&](const auto& value_of) {
+    for (int d = 0; d < stride_; d += kLanes) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const float difference = static_cast<float>(steps[d + lane] - value_of(values[d + lane]));
+        sums[lane] += difference * difference;
+      }
     }
+  };
+  if (has_empty_cells_) {
+    add([](std::int16_t value) { return value == kEmptyCell ? 0 : value; });
+  } else {
+    add([](std::int16_t value) { return value; });
   }
   constexpr float kUnitSq = static_cast<float>(kDescriptorUnit * kDescriptorUnit);
   return kUnitSq * ((sums[0] + sums[1]) + (sums[2] + sums[3]));

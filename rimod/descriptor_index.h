@@ -68,6 +68,7 @@ class DescriptorIndex {
   int stride_ = 0;  // places of a descriptor in values_, those beyond its size are 0
   // Descriptors lie in the order of the leaves, so that a leaf is read in one go: these are places.
   std::vector<std::int16_t> values_;
+  bool has_empty_cells_ = false;
   std::vector<int> order_;  // which descriptor has a place
   std::vector<Node> nodes_;
 };

@@ -22,9 +22,8 @@ std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features
   for (const Correspondence& match :
        MatchFeatures(features.features, database.descriptors(), params.matching, execution)) {
     const int model = database.feature(match.model_feature).model;
-    by_model[model].push_back({match.scene_feature,
-                               match.model_feature - database.first_feature(model),
-                               match.distance});
+    by_model[model].push_back(
+        {match.scene_feature, match.model_feature - database.first_feature(model), match.distance});
   }
   return by_model;
 }
