@@ -85,7 +85,7 @@ class Detector {
 };
 
 // Reads one source and detects in its scans; false when something of it could not be read.
-bool DetectIn(const std::string& path, const SweepParams& params, Detector* detector) {
+bool DetectIn(const std::string& path, const ScanSourceParams& params, Detector* detector) {
   bool good = true;
   const auto on_scan = [&](const NamedScan& scan) {
     try {
@@ -136,8 +136,12 @@ int RunDetect(const DetectOptions& options, const Configuration& configuration, 
   TellOtherParams(folder.models, params);
   const ModelDatabase database(std::move(folder.models), params, pool.MakeExecution());
   Detector detector(database, params, pool.MakeExecution(), &out);
+  ScanSourceParams source;
+  source.sweep = params.sweep;
+  source.cloud = params.cloud;
+  source.cloud_channels = options.clouds;
   for (const std::string& path : options.scans) {
-    good = DetectIn(path, params.sweep, &detector) && good;
+    good = DetectIn(path, source, &detector) && good;
   }
   if (!options.timing.empty()) {
     const std::string error =

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/channels.h"
 #include "io/config.h"
 
 namespace rimod {
@@ -12,6 +13,7 @@ namespace rimod {
 struct DetectOptions {
   std::string models;              // folder with *.rimod
   int num_threads = 0;             // 0: as many as the machine has
+  CloudChannels clouds;            // of point clouds in logs
   std::string timing;              // file for stage times; empty: none
   std::vector<std::string> scans;  // files: PCD, PLY, 3DTK .3d, LCM logs
 };

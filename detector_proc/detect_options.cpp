@@ -34,6 +34,7 @@ std::unique_ptr<CLI::App> MakeDetectApp(DetectCommandLine* command_line) {
   app->add_option("--models", options.models, "Folder with the models: all of its *.rimod")
       ->type_name("DIR")
       ->required();
+  AddCloudOptions(app.get(), &options.clouds);
   app->add_option("--timing", options.timing,
                   "Write the milliseconds of every stage of every scan there")
       ->type_name("FILE.json");

@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
       "Describes 3D scans: computes their range images and the features in them.\n"
       "Reads rimod.scan_t on RIMOD_SCAN; sends rimod.range_image_t on RIMOD_RANGE_IMAGE,\n"
       "rimod.feature_set_t on RIMOD_FEATURES and rimod.status_t on RIMOD_STATUS once a second.\n"
+      "With --cloud-channel scans also come as bot_core.pointcloud2_t, from a sensor that delivers "
+      "whole ones.\n"
       "Scans that come faster than they can be described overtake each other: the newest counts.",
       "rimod-extractor");
   rimod::CommonOptions common;
@@ -19,6 +21,8 @@ int main(int argc, char** argv) {
   rimod::AddCommonOptions(&app, &common);
   rimod::AddBusOptions(&app, &bus);
   rimod::AddThreadsOption(&app, &num_threads);
+  rimod::CloudChannels clouds;
+  rimod::AddCloudOptions(&app, &clouds);
   if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
   rimod::LogToStderr(app.get_name());
 
@@ -26,6 +30,6 @@ int main(int argc, char** argv) {
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
   rimod::ExtractorProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
-                                  num_threads);
+                                  num_threads, clouds);
   return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
 }

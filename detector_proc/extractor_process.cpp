@@ -3,9 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <limits>
 #include <utility>
 
+#include "io/cloud_messages.h"
 #include "io/feature_messages.h"
+#include "io/laser_messages.h"
+#include "io/partial_messages.h"
 #include "io/range_image_messages.h"
 #include "io/stage_timer.h"
 #include "io/stoppable.h"
@@ -19,36 +23,118 @@ using Clock = std::chrono::steady_clock;
 // The handler only joins sections, so that few wait; some whole scans may.
 constexpr int kQueueCapacity = 1000;
 
+// Clouds may have megabytes; while the handler is late some may wait.
+constexpr int kCloudQueueCapacity = 10;
+
+constexpr std::int64_t kNoScan = std::numeric_limits<std::int64_t>::min();
+
 }  // namespace
 
 ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                                   const Configuration& configuration, int num_threads)
+                                   const Configuration& configuration, int num_threads,
+                                   const CloudChannels& clouds)
     : channels_(channels),
       params_(configuration.pipeline),
       pool_(num_threads),
       joiner_(JoinerParamsFrom(configuration.bus)),
+      partial_joiner_(JoinerParamsFrom(configuration.bus)),
+      placer_(params_.cloud, !clouds.poses.empty()),
       status_(out, channels.status, "rimod-extractor"),
       publisher_(out, configuration.bus),
+      last_scan_(kNoScan),
       worker_(
-          configuration.bus.max_waiting_scans, [] {},
-          [this](const StampedScan& scan) { Work(scan); }) {
-  subscription_ =
-      SubscribeTo<scan_t>(in, channels.scan, kQueueCapacity, status_.MakeObserver(),
-                          [this](scan_t section) { return OnSection(std::move(section)); });
+          configuration.bus.max_waiting_scans, [] {}, [this](const Job& job) { Work(job); }) {
+  const SubscriptionObserver observer = status_.MakeObserver();
+  subscriptions_.push_back(
+      SubscribeTo<scan_t>(in, channels.scan, kQueueCapacity, observer,
+                          [this](scan_t section) { return OnSection(std::move(section)); }));
+  subscriptions_.push_back(SubscribeTo<partial_scan_t>(
+      in, channels.partial_scan, kQueueCapacity, observer,
+      [this](partial_scan_t section) { return OnPartialSection(std::move(section)); }));
+  SubscribeToClouds(in, clouds);
 }
 
 ExtractorProcess::~ExtractorProcess() { stop_ = true; }
+
+void ExtractorProcess::SubscribeToClouds(lcm::LCM* in, const CloudChannels& clouds) {
+  if (clouds.clouds.empty()) return;
+  takes_clouds_ = true;
+  const SubscriptionObserver observer = status_.MakeObserver();
+  subscriptions_.push_back(SubscribeTo<bot_core::pointcloud2_t>(
+      in, clouds.clouds, kCloudQueueCapacity, observer,
+      [this](const bot_core::pointcloud2_t& message) { return OnCloud(message); }));
+  if (clouds.poses.empty()) return;
+  subscriptions_.push_back(SubscribeTo<bot_core::rigid_transform_t>(
+      in, clouds.poses, kQueueCapacity, observer,
+      [this](const bot_core::rigid_transform_t& message) { return OnCloudPose(message); }));
+}
 
 std::string ExtractorProcess::OnSection(scan_t section) {
   const auto sections = joiner_.Add(std::move(section), Clock::now());
   if (!sections) return "";
   JoinedScan joined = JoinScanSections(*sections);
   if (!joined.scan) return joined.error;
-  status_.CountDropped("scans overtaken", worker_.Give(std::move(*joined.scan)));
+  Give(std::move(*joined.scan));
   return "";
 }
 
-void ExtractorProcess::Work(const StampedScan& scan) try {
+std::string ExtractorProcess::OnPartialSection(partial_scan_t section) {
+  const auto sections = partial_joiner_.Add(std::move(section.section), Clock::now());
+  if (!sections) return "";
+  const JoinedSweepGrowth joined = SweepGrowthFrom(section.utime, section.step, *sections);
+  if (!joined.growth) return joined.error;
+  if (!growing_.Add(*joined.growth)) return "";  // a step is missing: the scan itself will come
+  StampedScan scan;
+  scan.utime = growing_.sweep_begin().count();
+  scan.utime_end = growing_.end().count();
+  scan.scan = *growing_.scan();
+  num_partial_overtaken_ += worker_.GiveWhenIdle({/*is_partial=*/true, std::move(scan)});
+  return "";
+}
+
+std::string ExtractorProcess::OnCloud(const bot_core::pointcloud2_t& message) {
+  SensorCloudFromMessage cloud = FromMessage(message);
+  if (!cloud.cloud) return cloud.error;
+  Give(placer_.AddCloud(std::move(*cloud.cloud)));
+  return "";
+}
+
+std::string ExtractorProcess::OnCloudPose(const bot_core::rigid_transform_t& message) {
+  const TimedPoseFromMessage pose = FromMessage(message);
+  if (!pose.pose) return pose.error;
+  Give(placer_.AddPose(*pose.pose));
+  return "";
+}
+
+void ExtractorProcess::Give(std::vector<PlacedCloud> clouds) {
+  for (PlacedCloud& cloud : clouds) {
+    StampedScan scan;
+    scan.utime = scan.utime_end = cloud.time.count();
+    scan.scan = std::move(cloud.scan);
+    Give(std::move(scan));
+  }
+}
+
+void ExtractorProcess::Give(StampedScan scan) {
+  last_scan_ = scan.utime;
+  status_.CountDropped("scans overtaken", worker_.Give({/*is_partial=*/false, std::move(scan)}));
+}
+
+void ExtractorProcess::Work(const Job& job) try {
+  if (job.is_partial) {
+    WorkOnPartial(job.scan);
+  } else {
+    WorkOnScan(job.scan);
+  }
+} catch (const Stopped&) {
+  // The process ends, or a whole scan came in: this one is left undone.
+  if (job.is_partial) ++num_partial_overtaken_;
+} catch (const std::exception& error) {
+  status_.CountDropped("scans failed");
+  status_.ReportError(error.what(), "scan " + std::to_string(job.scan.utime) + ": " + error.what());
+}
+
+void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
   const auto begin = Clock::now();
   StageTimer timer;
   Execution execution = pool_.MakeExecution();
@@ -66,18 +152,44 @@ void ExtractorProcess::Work(const StampedScan& scan) try {
   status_.CountOut();
   spdlog::info("scan {}: {} points, {} features, {:.0f} ms", scan.utime, scan.scan.points.size(),
                features.features.size(), total.count());
-} catch (const Stopped&) {
-  // The process ends: the scan is left undone.
-} catch (const std::exception& error) {
-  status_.CountDropped("scans failed");
-  status_.ReportError(error.what(), "scan " + std::to_string(scan.utime) + ": " + error.what());
+}
+
+void ExtractorProcess::WorkOnPartial(const StampedScan& scan) {
+  if (last_scan_ == scan.utime) throw Stopped();
+  const auto begin = Clock::now();
+  const Execution execution =
+      StoppableExecution(StoppableExecution(pool_.MakeExecution(), &stop_), &worker_.wanted());
+  const RangeImage image = ComputeRangeImage(scan.scan, params_, execution);
+  const FeatureSet features = ExtractFeatures(image, params_, execution);
+  if (last_scan_ == scan.utime) throw Stopped();
+  publisher_.PublishAll(channels_.partial_range_image,
+                        ToPartialSections(image, scan.utime, scan.utime_end));
+  publisher_.PublishAll(channels_.partial_features,
+                        ToPartialSections(features, scan.utime, scan.utime_end));
+  ++num_partial_out_;
+  const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
+  status_.AddStageTimes({{"partial_total", total.count()}});
 }
 
 void ExtractorProcess::OnIdle() {
   joiner_.GiveUpStale(Clock::now());
+  partial_joiner_.GiveUpStale(Clock::now());
   status_.SetSectionCounters("scan", joiner_.counters());
+  status_.SetCounter("partial scans described", num_partial_out_);
+  status_.SetCounter("partial scans overtaken", num_partial_overtaken_);
+  if (takes_clouds_) ReportClouds();
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.PublishIfDue();
+}
+
+void ExtractorProcess::ReportClouds() {
+  const CloudCounters& counters = placer_.counters();
+  status_.SetCounter("clouds", counters.clouds);
+  status_.SetCounter("bad clouds", counters.bad_clouds, true);
+  status_.SetCounter("unordered clouds", counters.unordered_clouds, true);
+  status_.SetCounter("clouds without pose", counters.clouds_without_pose, true);
+  status_.SetCounter("bad poses", counters.bad_poses);
+  status_.SetCounter("unordered poses", counters.unordered_poses);
 }
 
 }  // namespace rimod

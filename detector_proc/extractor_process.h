@@ -4,7 +4,10 @@
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "bot_core/pointcloud2_t.hpp"
+#include "bot_core/rigid_transform_t.hpp"
 #include "io/channels.h"
 #include "io/config.h"
 #include "io/newest_worker.h"
@@ -14,16 +17,21 @@
 #include "io/section_joiner.h"
 #include "io/status_reporter.h"
 #include "io/thread_pool.h"
+#include "rimod/cloud_placer.h"
+#include "rimod/growing_scan.h"
+#include "rimod/partial_scan_t.hpp"
 
 namespace rimod {
 
-// Scans in, their range images and features out.
+// Scans in, their range images and features out. Scans come ready-made, as point clouds of a sensor
+// that delivers whole ones, and, worked on while there is nothing else to do, as they grow.
 class ExtractorProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
   // 0 for as many as the machine has.
   ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                   const Configuration& configuration, int num_threads);
+                   const Configuration& configuration, int num_threads,
+                   const CloudChannels& clouds = {});
   // Breaks off the computation at hand.
   ~ExtractorProcess();
 
@@ -31,18 +39,42 @@ class ExtractorProcess {
   void OnIdle();
 
  private:
+  // A scan, or what is known of a sweep that still goes on.
+  struct Job {
+    bool is_partial = false;
+    StampedScan scan;  // of a partial one utime is the sweep's, utime_end the last beam so far
+  };
+
+  void SubscribeToClouds(lcm::LCM* in, const CloudChannels& clouds);
   std::string OnSection(scan_t section);
-  void Work(const StampedScan& scan);
+  std::string OnPartialSection(partial_scan_t section);
+  std::string OnCloud(const bot_core::pointcloud2_t& message);
+  std::string OnCloudPose(const bot_core::rigid_transform_t& message);
+  void Give(StampedScan scan);
+  void Give(std::vector<PlacedCloud> clouds);
+  void ReportClouds();
+
+  // In the worker's thread:
+  void Work(const Job& job);
+  void WorkOnScan(const StampedScan& scan);
+  void WorkOnPartial(const StampedScan& scan);
 
   const Channels channels_;
   const PipelineParams params_;
   std::atomic<bool> stop_{false};
   ThreadPool pool_;
   SectionJoiner<scan_t> joiner_;
+  SectionJoiner<scan_t> partial_joiner_;
+  GrowingScan growing_;
+  CloudPlacer placer_;
+  bool takes_clouds_ = false;
+  std::atomic<std::int64_t> num_partial_out_{0};
+  std::atomic<std::int64_t> num_partial_overtaken_{0};
   StatusReporter status_;
   PacedPublisher publisher_;
-  NewestWorker<StampedScan> worker_;
-  std::unique_ptr<BytesSubscription> subscription_;
+  std::atomic<std::int64_t> last_scan_;  // its utime: growing scans of that sweep are late
+  NewestWorker<Job> worker_;
+  std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
 };
 
 }  // namespace rimod

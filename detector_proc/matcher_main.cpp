@@ -17,7 +17,9 @@ int main(int argc, char** argv) {
       "Reads rimod.range_image_t on RIMOD_RANGE_IMAGE, rimod.feature_set_t on RIMOD_FEATURES and\n"
       "further models, rimod.object_model_t, on RIMOD_MODEL; sends rimod.detections_t on\n"
       "RIMOD_DETECTIONS, rimod.pose_hypotheses_t on RIMOD_HYPOTHESES and rimod.status_t on\n"
-      "RIMOD_STATUS once a second. Of scans that come too fast the newest counts.",
+      "RIMOD_STATUS once a second. Of sweeps that still go on, where they come, it tells on\n"
+      "RIMOD_DETECTIONS_EARLY, rimod.early_detections_t, what it finds. Of scans "
+      "that come too fast\nthe newest counts.",
       "rimod-matcher");
   rimod::CommonOptions common;
   rimod::BusOptions bus;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "io/detection_messages.h"
@@ -26,6 +27,8 @@ constexpr int kQueueCapacity = 1000;
 // Models that a process keeps: others' names must not fill its memory.
 constexpr std::size_t kMaxModels = 256;
 
+constexpr std::int64_t kNoScan = std::numeric_limits<std::int64_t>::min();
+
 std::chrono::milliseconds PatienceOf(const BusParams& params) {
   return std::chrono::milliseconds(static_cast<int>(1e3 * params.join_patience));
 }
@@ -43,12 +46,19 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       feature_joiner_(JoinerParamsFrom(configuration.bus)),
       model_joiner_(JoinerParamsFrom(configuration.bus)),
       partners_(PatienceOf(configuration.bus)),
+      partial_image_joiner_(JoinerParamsFrom(configuration.bus)),
+      partial_feature_joiner_(JoinerParamsFrom(configuration.bus)),
+      partial_partners_(PatienceOf(configuration.bus)),
+      sweep_patience_(PatienceOf(configuration.bus) +
+                      std::chrono::milliseconds(static_cast<int>(1e3 * params_.early.period))),
       status_(out, channels.status, "rimod-matcher"),
       publisher_(out, configuration.bus),
-      first_models_(std::move(models)) {
-  worker_ = std::make_unique<NewestWorker<DescribedScan>>(
+      first_models_(std::move(models)),
+      tracker_(params_.early),
+      last_scan_(kNoScan) {
+  worker_ = std::make_unique<NewestWorker<Job>>(
       configuration.bus.max_waiting_scans, [this] { RebuildDatabase(); },
-      [this](const DescribedScan& scan) { Work(scan); });
+      [this](const Job& job) { Work(job); });
   worker_->Poke();
   const SubscriptionObserver observer = status_.MakeObserver();
   subscriptions_.push_back(SubscribeTo<range_image_t>(
@@ -57,6 +67,12 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
   subscriptions_.push_back(SubscribeTo<feature_set_t>(
       in, channels.features, kQueueCapacity, observer,
       [this](feature_set_t section) { return OnFeatures(std::move(section)); }));
+  subscriptions_.push_back(SubscribeTo<partial_range_image_t>(
+      in, channels.partial_range_image, kQueueCapacity, observer,
+      [this](partial_range_image_t section) { return OnPartialRangeImage(std::move(section)); }));
+  subscriptions_.push_back(SubscribeTo<partial_feature_set_t>(
+      in, channels.partial_features, kQueueCapacity, observer,
+      [this](partial_feature_set_t section) { return OnPartialFeatures(std::move(section)); }));
   subscriptions_.push_back(SubscribeTo<object_model_t>(
       in, channels.model, kQueueCapacity, observer,
       [this](object_model_t section) { return OnModel(std::move(section)); }));
@@ -101,8 +117,47 @@ std::string MatcherProcess::OnModel(object_model_t section) {
   return "";
 }
 
+std::string MatcherProcess::OnPartialRangeImage(partial_range_image_t section) {
+  const auto sections = partial_image_joiner_.Add(std::move(section.section), Clock::now());
+  if (!sections) return "";
+  JoinedRangeImage joined = JoinRangeImageSections(*sections);
+  if (!joined.image) return joined.error;
+  GivePartial(section.utime, partial_partners_.AddImage(sections->front().utime,
+                                                        std::move(*joined.image), Clock::now()));
+  return "";
+}
+
+std::string MatcherProcess::OnPartialFeatures(partial_feature_set_t section) {
+  const auto sections = partial_feature_joiner_.Add(std::move(section.section), Clock::now());
+  if (!sections) return "";
+  JoinedFeatures joined = JoinFeatureSections(*sections);
+  if (!joined.features) return joined.error;
+  GivePartial(section.utime,
+              partial_partners_.AddFeatures(sections->front().utime, std::move(*joined.features),
+                                            Clock::now()));
+  return "";
+}
+
 void MatcherProcess::Give(std::optional<DescribedScan> scan) {
-  if (scan) status_.CountDropped("scans overtaken", worker_->Give(std::move(*scan)));
+  if (!scan) return;
+  last_scan_ = scan->utime;
+  if (scan->utime == partial_sweep_) last_partial_.reset();
+  status_.CountDropped("scans overtaken",
+                       worker_->Give({JobKind::kScan, scan->utime, std::move(*scan)}));
+}
+
+void MatcherProcess::GivePartial(std::int64_t sweep_utime, std::optional<DescribedScan> scan) {
+  if (!scan || last_scan_ == sweep_utime) return;
+  partial_sweep_ = sweep_utime;
+  last_partial_ = Clock::now();
+  num_early_overtaken_ += worker_->GiveWhenIdle({JobKind::kPartial, sweep_utime, std::move(*scan)});
+}
+
+// A sweep that ended incomplete, or whose scan got lost, has no detections.
+void MatcherProcess::GiveUpSilentSweep() {
+  if (!last_partial_ || Clock::now() - *last_partial_ <= sweep_patience_) return;
+  last_partial_.reset();
+  worker_->GiveWhenIdle({JobKind::kGiveUp, partial_sweep_, {}});
 }
 
 // The models of the folder: those that were read at the start, then as they are there now.
@@ -152,8 +207,24 @@ void MatcherProcess::RebuildDatabase() try {
   status_.ReportError(error.what(), std::string("models: ") + error.what());
 }
 
-void MatcherProcess::Work(const DescribedScan& scan) try {
+void MatcherProcess::Work(const Job& job) try {
   if (!database_) return;
+  if (job.kind == JobKind::kScan) {
+    WorkOnScan(job.scan);
+  } else if (job.kind == JobKind::kPartial) {
+    WorkOnPartial(job.sweep_utime, job.scan);
+  } else if (early_ && early_->utime == job.sweep_utime) {
+    FinishSweep({});
+  }
+} catch (const Stopped&) {
+  // The process ends, or a whole scan came in: this one is left undone.
+  if (job.kind == JobKind::kPartial) ++num_early_overtaken_;
+} catch (const std::exception& error) {
+  status_.CountDropped("scans failed");
+  status_.ReportError(error.what(), "scan " + std::to_string(job.scan.utime) + ": " + error.what());
+}
+
+void MatcherProcess::WorkOnScan(const DescribedScan& scan) {
   const auto begin = Clock::now();
   StageTimer timer;
   Execution execution = pool_.MakeExecution();
@@ -166,11 +237,43 @@ void MatcherProcess::Work(const DescribedScan& scan) try {
   Publish(scan, result, timer.times());
   spdlog::info("scan {}: {} detections, {} hypotheses, {:.0f} ms", scan.utime,
                result.detections.size(), result.num_hypotheses_found, total.count());
-} catch (const Stopped&) {
-  // The process ends: the scan is left undone.
-} catch (const std::exception& error) {
-  status_.CountDropped("scans failed");
-  status_.ReportError(error.what(), "scan " + std::to_string(scan.utime) + ": " + error.what());
+  if (!early_ || early_->utime != scan.utime) return;
+  early_->T_local_sensor = scan.image.T_local_sensor();
+  FinishSweep(result.detections);
+}
+
+void MatcherProcess::WorkOnPartial(std::int64_t sweep_utime, const DescribedScan& scan) {
+  if (last_scan_ == sweep_utime) throw Stopped();
+  const auto begin = Clock::now();
+  const Execution execution =
+      StoppableExecution(StoppableExecution(pool_.MakeExecution(), &stop_), &worker_->wanted());
+  const DetectionResult result =
+      DetectObjects(scan.image, scan.features, *database_, params_, execution);
+  const std::vector<EarlySighting> sightings =
+      SightingsOf(result.detections, scan.image, *database_);
+  if (early_ && early_->utime != sweep_utime) FinishSweep({});
+  early_.emplace();
+  early_->utime = sweep_utime;
+  early_->known_until = scan.utime;
+  early_->T_local_sensor = scan.image.T_local_sensor();
+  early_->num_models = static_cast<int>(models_.size());
+  PublishEarly(/*is_final=*/false, tracker_.Update(Time(sweep_utime), Time(scan.utime), sightings));
+  ++num_early_looks_;
+  const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
+  status_.AddStageTimes({{"partial_total", total.count()}});
+}
+
+void MatcherProcess::FinishSweep(const std::vector<Detection>& detections) {
+  PublishEarly(/*is_final=*/true,
+               tracker_.Finish(Time(early_->utime), Time(early_->known_until), detections));
+  early_.reset();
+}
+
+void MatcherProcess::PublishEarly(bool is_final, std::vector<EarlyObject> objects) {
+  StampedEarlyObjects early = *early_;
+  early.is_final = is_final;
+  early.objects = std::move(objects);
+  publisher_.Publish(channels_.early_detections, ToMessage(early));
 }
 
 void MatcherProcess::Publish(const DescribedScan& scan, const DetectionResult& result,
@@ -194,10 +297,16 @@ void MatcherProcess::OnIdle() {
   feature_joiner_.GiveUpStale(now);
   model_joiner_.GiveUpStale(now);
   partners_.GiveUpStale(now);
+  partial_image_joiner_.GiveUpStale(now);
+  partial_feature_joiner_.GiveUpStale(now);
+  partial_partners_.GiveUpStale(now);
+  GiveUpSilentSweep();
   status_.SetSectionCounters("range image", image_joiner_.counters());
   status_.SetSectionCounters("features", feature_joiner_.counters());
   status_.SetSectionCounters("model", model_joiner_.counters());
   status_.SetCounter("scans without partner", partners_.num_unpaired(), true);
+  status_.SetCounter("early looks", num_early_looks_);
+  status_.SetCounter("early looks overtaken", num_early_overtaken_);
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.PublishIfDue();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "io/channels.h"
 #include "io/config.h"
+#include "io/early_messages.h"
 #include "io/newest_worker.h"
 #include "io/paced_publisher.h"
 #include "io/partner_joiner.h"
@@ -19,14 +21,19 @@
 #include "io/status_reporter.h"
 #include "io/thread_pool.h"
 #include "rimod/detector.h"
+#include "rimod/early_detection.h"
 #include "rimod/feature_set_t.hpp"
 #include "rimod/object_model_t.hpp"
+#include "rimod/partial_feature_set_t.hpp"
+#include "rimod/partial_range_image_t.hpp"
 #include "rimod/range_image_t.hpp"
 
 namespace rimod {
 
 // Range images and features in, pose hypotheses and detections of known objects out. Models come at
 // the start and, while running, over the bus; a model takes the place of another of its name.
+// While there is nothing else to do, sweeps that still go on are looked at, and what is found in
+// them is told early.
 class MatcherProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
@@ -45,12 +52,32 @@ class MatcherProcess {
   std::string OnRangeImage(range_image_t section);
   std::string OnFeatures(feature_set_t section);
   std::string OnModel(object_model_t section);
+  std::string OnPartialRangeImage(partial_range_image_t section);
+  std::string OnPartialFeatures(partial_feature_set_t section);
   void Give(std::optional<DescribedScan> scan);
+  void GivePartial(std::int64_t sweep_utime, std::optional<DescribedScan> scan);
+  void GiveUpSilentSweep();
+
+  enum class JobKind {
+    kScan,
+    kPartial,  // what is known of a sweep; the scan's utime is the last beam so far
+    kGiveUp    // nothing is heard of a sweep any more
+  };
+  struct Job {
+    JobKind kind = JobKind::kScan;
+    std::int64_t sweep_utime = 0;
+    DescribedScan scan;
+  };
 
   // In the worker's thread:
   void RebuildDatabase();
   std::vector<ObjectModel> ModelsOfFolder(const Execution& execution);
-  void Work(const DescribedScan& scan);
+  void Work(const Job& job);
+  void WorkOnScan(const DescribedScan& scan);
+  void WorkOnPartial(std::int64_t sweep_utime, const DescribedScan& scan);
+  // The sweep that is looked at has ended with these detections: tells it, and forgets the sweep.
+  void FinishSweep(const std::vector<Detection>& detections);
+  void PublishEarly(bool is_final, std::vector<EarlyObject> objects);
   void Publish(const DescribedScan& scan, const DetectionResult& result, const StageTimes& times);
 
   const Channels channels_;
@@ -62,6 +89,12 @@ class MatcherProcess {
   SectionJoiner<feature_set_t> feature_joiner_;
   SectionJoiner<object_model_t> model_joiner_;
   PartnerJoiner partners_;
+  SectionJoiner<range_image_t> partial_image_joiner_;
+  SectionJoiner<feature_set_t> partial_feature_joiner_;
+  PartnerJoiner partial_partners_;
+  const std::chrono::milliseconds sweep_patience_;
+  std::optional<std::chrono::steady_clock::time_point> last_partial_;  // of a sweep without a scan
+  std::int64_t partial_sweep_ = 0;                                     // that sweep
   StatusReporter status_;
   PacedPublisher publisher_;
 
@@ -72,8 +105,15 @@ class MatcherProcess {
   std::optional<std::vector<ObjectModel>> first_models_;  // the folder's, as read at the start
   std::map<std::string, ObjectModel> bus_models_;         // by name; they replace the folder's
   std::optional<ModelDatabase> database_;
+  EarlyTracker tracker_;
+  // The sweep that is looked at early: its last look, without objects.
+  std::optional<StampedEarlyObjects> early_;
 
-  std::unique_ptr<NewestWorker<DescribedScan>> worker_;
+  std::atomic<std::int64_t> last_scan_;  // its utime: looks at that sweep are late
+  std::atomic<std::int64_t> num_early_looks_{0};
+  std::atomic<std::int64_t> num_early_overtaken_{0};
+
+  std::unique_ptr<NewestWorker<Job>> worker_;
   std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
 };
 

@@ -9,18 +9,27 @@ namespace {
 
 constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
 
-constexpr std::array<std::string Channels::*, 9> kNames = {
-    &Channels::laser,       &Channels::laser_to_local, &Channels::scan,
-    &Channels::range_image, &Channels::features,       &Channels::model,
-    &Channels::hypotheses,  &Channels::detections,     &Channels::status};
+constexpr std::array<std::string Channels::*, 13> kNames = {&Channels::laser,
+                                                            &Channels::laser_to_local,
+                                                            &Channels::scan,
+                                                            &Channels::range_image,
+                                                            &Channels::features,
+                                                            &Channels::model,
+                                                            &Channels::hypotheses,
+                                                            &Channels::detections,
+                                                            &Channels::partial_scan,
+                                                            &Channels::partial_range_image,
+                                                            &Channels::partial_features,
+                                                            &Channels::early_detections,
+                                                            &Channels::status};
 
-bool IsUsableName(const std::string& name) {
+}  // namespace
+
+bool IsUsableChannelName(const std::string& name) {
   return !name.empty() && name.size() <= kMaxChannelLength &&
          std::all_of(name.begin(), name.end(),
                      [](char c) { return std::isgraph(static_cast<unsigned char>(c)) != 0; });
 }
-
-}  // namespace
 
 std::string RenameChannel(const std::string& renaming, Channels* channels) {
   const std::size_t equals = renaming.find('=');
@@ -32,7 +41,7 @@ std::string RenameChannel(const std::string& renaming, Channels* channels) {
   const Channels defaults;
   for (std::string Channels::*const name : kNames) {
     if (defaults.*name != from) continue;
-    if (!IsUsableName(to)) {
+    if (!IsUsableChannelName(to)) {
       return "'" + to + "' cannot be a channel name: 1 to 63 printable characters, no spaces";
     }
     channels->*name = to;

@@ -16,6 +16,7 @@ using Keys = std::vector<ConfigKey>;
 
 Keys ScanKeys(PipelineParams* p) {
   SweepParams& s = p->sweep;
+  CloudParams& c = p->cloud;
   RangeImageParams& r = p->range_image;
   return {
       {"sweep", "line_duration", &s.line_duration, "s, from a line's first beam to the next line's; > 0"},
@@ -31,6 +32,14 @@ Keys ScanKeys(PipelineParams* p) {
       {"sweep", "max_buffered_lines", &s.max_buffered_lines, "lines that wait for a pose; >= 1"},
       {"sweep", "max_buffered_poses", &s.max_buffered_poses, "poses that wait for a line; >= 2"},
       {"sweep", "max_lines", &s.max_lines, "a longer sweep is ended as incomplete; >= 1"},
+
+      {"cloud", "mount_x", &c.mount_x, "m, sensor of point clouds in its carrier's frame; -1000 .. 1000"},
+      {"cloud", "mount_y", &c.mount_y, "m"},
+      {"cloud", "mount_z", &c.mount_z, "m; without a pose channel the height above the floor"},
+      {"cloud", "mount_roll_deg", DegreesOf{&c.mount_roll}, "turned about z (yaw), then y (pitch), then x (roll); -360 .. 360"},
+      {"cloud", "mount_pitch_deg", DegreesOf{&c.mount_pitch}, "> 0 looks down"},
+      {"cloud", "mount_yaw_deg", DegreesOf{&c.mount_yaw}, "> 0 looks left"},
+      {"cloud", "max_pose_gap", &c.max_pose_gap, "s, poses farther apart are not interpolated; 0.001 .. 3600"},
 
       {"range_image", "resolution_deg", DegreesOf{&r.resolution}, "of a pixel (paper: 0.4); 0.06 .. 5.7"},
       {"range_image", "max_resolution_deg", DegreesOf{&r.max_resolution}, "sparser scans get larger pixels, up to this; 0 = never .. 5.7"},
@@ -195,7 +204,15 @@ Keys DefaultMethodKeys(PipelineParams* p) {
 }
 
 Keys ResultKeys(PipelineParams* p) {
+  EarlyParams& e = p->early;
   return {
+      {"early", "period", &e.period, "s of a sweep after which it is looked at anew; 0.05 .. 3600"},
+      {"early", "max_unseen_share", &e.max_unseen_share, "of an object's near side that was not swept yet; 0 .. 1"},
+      {"early", "min_score", &e.min_score, "of a detection to be told early; 0 .. 1"},
+      {"early", "min_sightings", &e.min_sightings, ".. in so many looks in a row; 1 .. 100"},
+      {"early", "max_misses", &e.max_misses, "looks in a row without an object before it is withdrawn; 0 .. 100"},
+      {"early", "same_object_distance", &e.same_object_distance, "of the diameter, between detections of one object; 0 .. 10"},
+
       {"result", "max_reported_hypotheses", &p->max_reported_hypotheses, "in a result and its message; 1 .. 500"},
   };
 }
@@ -233,6 +250,7 @@ std::vector<SectionCheck> SectionChecks() {
   using C = const Configuration&;
   return {
       {"sweep", [](C c) { c.pipeline.sweep.Validate(); }},
+      {"cloud", [](C c) { c.pipeline.cloud.Validate(); }},
       {"range_image", [](C c) { c.pipeline.range_image.Validate(); }},
       {"interest_points", [](C c) { c.pipeline.interest_points.Validate(); }},
       {"range_patch", [](C c) { c.pipeline.range_patch.Validate(); }},
@@ -250,6 +268,7 @@ std::vector<SectionCheck> SectionChecks() {
       {"refinement", [](C c) { c.pipeline.refinement.Validate(); }},
       {"evidence", [](C c) { c.pipeline.evidence.Validate(); }},
       {"choice", [](C c) { c.pipeline.choice.Validate(); }},
+      {"early", [](C c) { c.pipeline.early.Validate(); }},
       {"result", [](C c) { c.pipeline.Validate(); }},
       {"bus", [](C c) { c.bus.Validate(); }},
   };

@@ -35,7 +35,9 @@ std::vector<stage_time_t> StageTimeMessages(const StageTimes& times) {
   return messages;
 }
 
-detection_t DetectionMessage(const Detection& detection) {
+}  // namespace
+
+detection_t ToMessage(const Detection& detection) {
   detection_t message = {};
   message.class_name = detection.class_name;
   SetPosition(detection.T_local_object.translation(), message.position);
@@ -45,8 +47,6 @@ detection_t DetectionMessage(const Detection& detection) {
   message.score = detection.score;
   return message;
 }
-
-}  // namespace
 
 pose_hypotheses_t ToMessage(const std::vector<PoseHypothesis>& hypotheses, int num_found,
                             std::int64_t utime) {
@@ -79,7 +79,7 @@ detections_t ToMessage(const StampedDetections& detections) {
   message.num_stage_times = static_cast<std::int32_t>(message.stage_times.size());
   int bytes = kFixedBytes + message.getEncodedSize();
   for (const Detection& detection : detections.detections) {
-    detection_t item = DetectionMessage(detection);
+    detection_t item = ToMessage(detection);
     bytes += item.getEncodedSize();
     if (bytes > kMaxMessageBytes) break;
     message.detections.push_back(std::move(item));

@@ -16,6 +16,8 @@ namespace rimod {
 pose_hypotheses_t ToMessage(const std::vector<PoseHypothesis>& hypotheses, int num_found,
                             std::int64_t utime);
 
+detection_t ToMessage(const Detection& detection);
+
 // What was found in one scan, with what a receiver needs to use it.
 struct StampedDetections {
   std::int64_t utime = 0;                                            // us, the scan's

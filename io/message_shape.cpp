@@ -3,10 +3,15 @@
 #include <cstring>
 
 #include "bot_core/planar_lidar_t.hpp"
+#include "bot_core/pointcloud2_t.hpp"
 #include "bot_core/rigid_transform_t.hpp"
 #include "rimod/detections_t.hpp"
+#include "rimod/early_detections_t.hpp"
 #include "rimod/feature_set_t.hpp"
 #include "rimod/object_model_t.hpp"
+#include "rimod/partial_feature_set_t.hpp"
+#include "rimod/partial_range_image_t.hpp"
+#include "rimod/partial_scan_t.hpp"
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
 #include "rimod/scan_t.hpp"
@@ -33,6 +38,11 @@ std::uint64_t ReadBigEndian(const std::uint8_t* bytes, std::size_t size) {
 
 void SkipArrays(ShapeCursor* cursor, int num_arrays, std::int32_t count, std::size_t bytes) {
   for (int i = 0; i < num_arrays; ++i) cursor->SkipArray(count, bytes);
+}
+
+void SkipDetection(ShapeCursor* cursor) {
+  cursor->SkipString();
+  cursor->Skip(kPose + kBox + kDouble);
 }
 
 void SkipStageTimes(ShapeCursor* cursor) {
@@ -102,6 +112,21 @@ void WalkShape<bot_core::rigid_transform_t>(ShapeCursor* cursor) {
 }
 
 template <>
+void WalkShape<bot_core::pointcloud2_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64 + kInt32);
+  cursor->SkipString();
+  cursor->Skip(2 * kInt32);
+  const std::int32_t num_fields = cursor->Count();
+  for (std::int32_t i = 0; i < num_fields && cursor->ok(); ++i) {
+    cursor->SkipString();
+    cursor->Skip(kInt32 + kByte + kInt32);
+  }
+  cursor->Skip(kByte + 2 * kInt32);
+  cursor->SkipArray(cursor->Count(), kByte);
+  cursor->Skip(kByte);
+}
+
+template <>
 void WalkShape<scan_t>(ShapeCursor* cursor) {
   cursor->Skip(2 * kInt64 + 4 * kInt32 + kPose);
   SkipArrays(cursor, 3, cursor->Count(), kFloat);
@@ -155,11 +180,36 @@ template <>
 void WalkShape<detections_t>(ShapeCursor* cursor) {
   cursor->Skip(kInt64 + kPose + kInt32);
   const std::int32_t count = cursor->Count();
-  for (std::int32_t i = 0; i < count && cursor->ok(); ++i) {
-    cursor->SkipString();
-    cursor->Skip(kPose + kBox + kDouble);
-  }
+  for (std::int32_t i = 0; i < count && cursor->ok(); ++i) SkipDetection(cursor);
   SkipStageTimes(cursor);
+}
+
+template <>
+void WalkShape<partial_scan_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64 + kInt32);
+  WalkShape<scan_t>(cursor);
+}
+
+template <>
+void WalkShape<partial_range_image_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64);
+  WalkShape<range_image_t>(cursor);
+}
+
+template <>
+void WalkShape<partial_feature_set_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64);
+  WalkShape<feature_set_t>(cursor);
+}
+
+template <>
+void WalkShape<early_detections_t>(ShapeCursor* cursor) {
+  cursor->Skip(2 * kInt64 + kByte + kPose + kInt32);
+  const std::int32_t count = cursor->Count();
+  for (std::int32_t i = 0; i < count && cursor->ok(); ++i) {
+    cursor->Skip(kInt64 + kByte + kInt64 + kDouble);
+    SkipDetection(cursor);
+  }
 }
 
 template <>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -13,6 +14,7 @@ namespace rimod {
 
 // Works on items, one at a time, in a thread of its own, so that whoever gives them can go on
 // receiving. Where work is slower than what comes in, the oldest waiting items are overtaken.
+// Items of a second rank are worked on only while no others wait.
 template <typename Item>
 class NewestWorker {
  public:
@@ -45,10 +47,26 @@ class NewestWorker {
         waiting_.pop_front();
         ++num_overtaken;
       }
+      wanted_ = true;
     }
     changed_.notify_all();
     return num_overtaken;
   }
+
+  // An item of the second rank: one waits, a newer one takes its place. Returns as Give().
+  int GiveWhenIdle(Item item) {
+    int num_overtaken = 0;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (idle_item_) ++num_overtaken;
+      idle_item_ = std::move(item);
+    }
+    changed_.notify_all();
+    return num_overtaken;
+  }
+
+  // Set while an item of the first rank waits: work on one of the second should end then.
+  const std::atomic<bool>& wanted() const { return wanted_; }
 
   // Has prepare called, also when there is no item.
   void Poke() {
@@ -64,7 +82,9 @@ class NewestWorker {
     while (true) {
       {
         std::unique_lock<std::mutex> lock(mutex_);
-        changed_.wait(lock, [this] { return stopping_ || poked_ || !waiting_.empty(); });
+        changed_.wait(lock, [this] {
+          return stopping_ || poked_ || !waiting_.empty() || idle_item_.has_value();
+        });
         if (stopping_) return;
         poked_ = false;
       }
@@ -77,9 +97,11 @@ class NewestWorker {
 
   std::optional<Item> Take() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (stopping_ || waiting_.empty()) return std::nullopt;
+    if (stopping_) return std::nullopt;
+    if (waiting_.empty()) return std::exchange(idle_item_, std::nullopt);
     std::optional<Item> item(std::move(waiting_.front()));
     waiting_.pop_front();
+    wanted_ = !waiting_.empty();
     return item;
   }
 
@@ -89,6 +111,8 @@ class NewestWorker {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> waiting_;
+  std::optional<Item> idle_item_;
+  std::atomic<bool> wanted_{false};  // !waiting_.empty()
   bool poked_ = false;
   bool stopping_ = false;
   std::thread thread_;

@@ -43,6 +43,28 @@ void AddThreadsOption(CLI::App* app, int* num_threads) {
       ->type_name("N");
 }
 
+void AddCloudOptions(CLI::App* app, CloudChannels* channels) {
+  const auto usable = [](const std::string& name) {
+    return IsUsableChannelName(name)
+               ? std::string()
+               : "'" + name + "' cannot be a channel name: 1 to 63 printable characters, no spaces";
+  };
+  CLI::Option* const clouds =
+      app->add_option(
+             "--cloud-channel", channels->clouds,
+             "Scans come there, too, as bot_core.pointcloud2_t, a whole scan each, in the "
+             "sensor's frame;\nwhere the sensor is mounted says the configuration's section "
+             "cloud")
+          ->type_name("NAME")
+          ->check(usable);
+  app->add_option("--cloud-pose-channel", channels->poses,
+                  "Poses of the clouds' carrier, bot_core.rigid_transform_t, carrier to local "
+                  "frame;\nwithout it the carrier stands at the local frame's origin")
+      ->type_name("NAME")
+      ->check(usable)
+      ->needs(clouds);
+}
+
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv) {
   constexpr int kBadUsage = 2;
   try {

@@ -37,6 +37,9 @@ void AddBusOptions(CLI::App* app, BusOptions* options);
 // Adds --threads: 0, the default, for as many as the machine has.
 void AddThreadsOption(CLI::App* app, int* num_threads);
 
+// Adds --cloud-channel and --cloud-pose-channel.
+void AddCloudOptions(CLI::App* app, CloudChannels* channels);
+
 // Parses the command line. A value is an exit code: 0 after --help or --version, 2 for bad usage
 // (told on stderr); without one the program goes on.
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/channels.h"
+#include "io/cloud_messages.h"
 #include "io/event_log.h"
 #include "io/files.h"
 #include "io/laser_messages.h"
@@ -25,10 +26,10 @@ class LogScans {
   LogScans(std::string log_name, const std::function<void(NamedScan)>& on_scan)
       : log_name_(std::move(log_name)), on_scan_(on_scan), begin_(Clock::now()) {}
 
-  void Add(std::int64_t utime, Scan scan) {
+  void Add(std::int64_t utime, std::int64_t utime_end, Scan scan) {
     const std::chrono::duration<double, std::milli> elapsed = Clock::now() - begin_;
     if (waiting_) HandOn(/*only=*/false);
-    waiting_ = NamedScan{"", utime, elapsed.count(), /*from_log=*/true, std::move(scan)};
+    waiting_ = NamedScan{"", utime, utime_end, elapsed.count(), /*from_log=*/true, std::move(scan)};
     begin_ = Clock::now();
   }
 
@@ -86,7 +87,7 @@ void AddSweeps(const std::string& path, std::vector<Sweep> sweeps, LogScans* sca
                ScanSourceReport* report) {
   for (Sweep& sweep : sweeps) {
     if (sweep.complete()) {
-      scans->Add(sweep.begin.count(), std::move(sweep.scan));
+      scans->Add(sweep.begin.count(), sweep.end.count(), std::move(sweep.scan));
     } else {
       report->warnings.push_back(path + ": left out a sweep of " + std::to_string(sweep.num_lines) +
                                  " lines: " + sweep.incomplete_reason);
@@ -111,10 +112,10 @@ void ReportCounters(const std::string& path, const SweepCounters& counters,
   if (!text.empty()) report->warnings.push_back(path + ": " + text);
 }
 
-void AssembleLog(const std::string& path, const Channels& channels, const SweepParams& params,
+void AssembleLog(const std::string& path, const Channels& channels, const ScanSourceParams& params,
                  LogScans* scans, ScanSourceReport* report) {
   EventLogReader log(path);
-  SweepAssembler assembler(params);
+  SweepAssembler assembler(params.sweep);
   Rejections rejections;
   while (const std::optional<LogEvent> event = log.Next()) {
     if (event->channel == channels.laser) {
@@ -138,10 +139,66 @@ void AssembleLog(const std::string& path, const Channels& channels, const SweepP
         rejections.Add(event->channel, decoded.error + pose.error);
       }
     }
+    if (!params.on_growth) continue;
+    const std::optional<SweepGrowth> growth = assembler.TakeGrowth(params.growth_period);
+    if (growth) params.on_growth(*growth);
   }
   AddSweeps(path, assembler.Finish(), scans, report);
   rejections.Report(path, report);
   ReportCounters(path, assembler.counters(), report);
+  if (!log.error().empty()) report->errors.push_back(log.error());
+}
+
+void ReportCounters(const std::string& path, const CloudCounters& counters,
+                    ScanSourceReport* report) {
+  std::string text;
+  for (const auto& [name, count] : {std::pair("clouds of no time", counters.bad_clouds),
+                                    {"clouds out of order", counters.unordered_clouds},
+                                    {"clouds without pose", counters.clouds_without_pose},
+                                    {"unusable poses", counters.bad_poses},
+                                    {"poses out of order", counters.unordered_poses}}) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
+  }
+  if (!text.empty()) report->warnings.push_back(path + ": " + text);
+}
+
+// Places the point clouds of a log.
+void PlaceClouds(const std::string& path, const ScanSourceParams& params, LogScans* scans,
+                 ScanSourceReport* report) {
+  const CloudChannels& channels = params.cloud_channels;
+  EventLogReader log(path);
+  CloudPlacer placer(params.cloud, !channels.poses.empty());
+  Rejections rejections;
+  const auto add = [scans](std::vector<PlacedCloud> clouds) {
+    for (PlacedCloud& cloud : clouds) {
+      scans->Add(cloud.time.count(), cloud.time.count(), std::move(cloud.scan));
+    }
+  };
+  while (const std::optional<LogEvent> event = log.Next()) {
+    if (event->channel == channels.clouds) {
+      const auto decoded =
+          DecodeMessage<bot_core::pointcloud2_t>(event->bytes.data(), event->bytes.size());
+      SensorCloudFromMessage cloud;
+      if (decoded.message) cloud = FromMessage(*decoded.message);
+      if (cloud.cloud) {
+        add(placer.AddCloud(std::move(*cloud.cloud)));
+      } else {
+        rejections.Add(event->channel, decoded.error + cloud.error);
+      }
+    } else if (event->channel == channels.poses) {
+      const auto decoded =
+          DecodeMessage<bot_core::rigid_transform_t>(event->bytes.data(), event->bytes.size());
+      TimedPoseFromMessage pose;
+      if (decoded.message) pose = FromMessage(*decoded.message);
+      if (pose.pose) {
+        add(placer.AddPose(*pose.pose));
+      } else {
+        rejections.Add(event->channel, decoded.error + pose.error);
+      }
+    }
+  }
+  rejections.Report(path, report);
+  ReportCounters(path, placer.counters(), report);
   if (!log.error().empty()) report->errors.push_back(log.error());
 }
 
@@ -167,7 +224,7 @@ void JoinLog(const std::string& path, const Channels& channels, LogScans* scans,
     if (!sections) continue;
     JoinedScan joined = JoinScanSections(*sections);
     if (joined.scan) {
-      scans->Add(joined.scan->utime, std::move(joined.scan->scan));
+      scans->Add(joined.scan->utime, joined.scan->utime_end, std::move(joined.scan->scan));
     } else {
       rejections.Add(event->channel, joined.error);
     }
@@ -191,21 +248,26 @@ std::string ListOf(const std::set<std::string>& names) {
   return text.empty() ? "no whole event" : text;
 }
 
-ScanSourceReport ReadLog(const std::string& path, const SweepParams& params,
+ScanSourceReport ReadLog(const std::string& path, const ScanSourceParams& params,
                          const std::function<void(NamedScan)>& on_scan) {
   ScanSourceReport report;
   const Channels channels;
-  const std::set<std::string> found = ChannelsOf(path, channels);
-  const auto has = [&found](const std::string& channel) { return found.count(channel) > 0; };
   LogScans scans(FileStem(path), on_scan);
   std::string cause = "holds no complete scan";
-  if (has(channels.laser) && has(channels.laser_to_local)) {
-    AssembleLog(path, channels, params, &scans, &report);
-  } else if (has(channels.scan)) {
-    JoinLog(path, channels, &scans, &report);
+  if (!params.cloud_channels.clouds.empty()) {
+    PlaceClouds(path, params, &scans, &report);
+    cause = "holds no usable point cloud on " + params.cloud_channels.clouds;
   } else {
-    cause = "has neither " + channels.laser + " with " + channels.laser_to_local + " nor " +
-            channels.scan + ", but " + ListOf(found);
+    const std::set<std::string> found = ChannelsOf(path, channels);
+    const auto has = [&found](const std::string& channel) { return found.count(channel) > 0; };
+    if (has(channels.laser) && has(channels.laser_to_local)) {
+      AssembleLog(path, channels, params, &scans, &report);
+    } else if (has(channels.scan)) {
+      JoinLog(path, channels, &scans, &report);
+    } else {
+      cause = "has neither " + channels.laser + " with " + channels.laser_to_local + " nor " +
+              channels.scan + ", but " + ListOf(found);
+    }
   }
   report.num_scans = scans.Finish();
   if (report.num_scans == 0) report.errors.push_back(path + ": " + cause);
@@ -214,7 +276,7 @@ ScanSourceReport ReadLog(const std::string& path, const SweepParams& params,
 
 }  // namespace
 
-ScanSourceReport ReadScans(const std::string& path, const SweepParams& params,
+ScanSourceReport ReadScans(const std::string& path, const ScanSourceParams& params,
                            const std::function<void(NamedScan)>& on_scan) {
   if (IsEventLog(path)) return ReadLog(path, params, on_scan);
   ScanSourceReport report;
@@ -230,6 +292,13 @@ ScanSourceReport ReadScans(const std::string& path, const SweepParams& params,
   report.num_scans = 1;
   on_scan(std::move(scan));
   return report;
+}
+
+ScanSourceReport ReadScans(const std::string& path, const SweepParams& params,
+                           const std::function<void(NamedScan)>& on_scan) {
+  ScanSourceParams source;
+  source.sweep = params;
+  return ReadScans(path, source, on_scan);
 }
 
 }  // namespace rimod

@@ -112,6 +112,7 @@ void ChoiceParams::Validate() const {
 
 void PipelineParams::Validate() const {
   sweep.Validate();
+  cloud.Validate();
   range_image.Validate();
   interest_points.Validate();
   range_patch.Validate();
@@ -128,6 +129,7 @@ void PipelineParams::Validate() const {
   refinement.Validate();
   evidence.Validate();
   choice.Validate();
+  early.Validate();
   CheckWithin("max_reported_hypotheses", max_reported_hypotheses, 1, 500);
 }
 

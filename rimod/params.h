@@ -1,5 +1,7 @@
 #pragma once
 
+#include "rimod/cloud_placer.h"
+#include "rimod/early_params.h"
 #include "rimod/evidence.h"
 #include "rimod/false_positive_rejection.h"
 #include "rimod/goodsac.h"
@@ -45,6 +47,7 @@ struct ChoiceParams {
 struct PipelineParams {
   Method method = Method::kDefault;
   SweepParams sweep;
+  CloudParams cloud;
   RangeImageParams range_image;
   InterestPointParams interest_points;
   RangePatchParams range_patch;
@@ -61,6 +64,7 @@ struct PipelineParams {
   RefinementParams refinement;
   EvidenceParams evidence;
   ChoiceParams choice;
+  EarlyParams early;
   int max_reported_hypotheses = 200;  // in a result and its message; 1 .. 500
   void Validate() const;              // all of the above
 };

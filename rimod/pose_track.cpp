@@ -6,6 +6,10 @@
 namespace rimod {
 namespace {
 
+constexpr std::int64_t kMaxTime = 4000000000000000000;
+// m; floats are coarser than the Earth is large beyond it.
+constexpr double kMaxPosition = 1e9;
+
 double Microseconds(Time duration) { return static_cast<double>(duration.count()); }
 
 // [axis]x, the matrix of the cross product.
@@ -16,6 +20,18 @@ Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& axis) {
 }
 
 }  // namespace
+
+bool IsUsableTime(Time time) { return time.count() >= -kMaxTime && time.count() <= kMaxTime; }
+
+bool IsUsablePose(const TimedPose& pose) {
+  const Eigen::Matrix3d R = pose.T_local_laser.linear();
+  const Eigen::Vector3d position = pose.T_local_laser.translation();
+  if (!IsUsableTime(pose.time) || !R.allFinite() || !position.allFinite()) return false;
+  constexpr double kTolerance = 1e-3;
+  const bool orthonormal =
+      (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance;
+  return orthonormal && R.determinant() > 0.0 && position.cwiseAbs().maxCoeff() <= kMaxPosition;
+}
 
 void PoseTrack::Add(const TimedPose& pose) {
   assert(poses_.empty() || pose.time > poses_.back().time);

@@ -8,6 +8,11 @@
 
 namespace rimod {
 
+// False for times beyond +- 120,000 years: they are garbage, and differences of them overflow.
+bool IsUsableTime(Time time);
+// False for poses that are not finite, no rotation, absurdly far away or of an unusable time.
+bool IsUsablePose(const TimedPose& pose);
+
 // How the laser moves between two neighbouring poses: its position at constant velocity (lerp), its
 // attitude at constant turn rate (slerp). Times in microseconds after some reference time.
 //

@@ -59,6 +59,16 @@ struct Sweep {
   bool complete() const { return incomplete_reason.empty(); }
 };
 
+// What a sweep that still goes on has grown by.
+struct SweepGrowth {
+  Time sweep_begin{0};  // first beam of the sweep: that of the Sweep that it becomes
+  int step = 0;         // 0, 1, .. of this sweep
+  Time begin{0};        // first beam of the growth
+  Time end{0};          // last beam of the growth: what is known of the sweep ends here
+  int num_lines = 0;    // of the growth
+  Scan scan;            // of the growth alone; its sensor pose is that of the whole sweep so far
+};
+
 // What was taken and left out so far, by cause. All of it is counted, nothing of it stops the
 // assembler.
 struct SweepCounters {

@@ -8,23 +8,6 @@ namespace rimod {
 namespace {
 
 constexpr char kClockRanBackwards[] = "the clock ran backwards";
-// Times beyond +- 120,000 years are garbage; differences of the others do not overflow.
-constexpr std::int64_t kMaxTime = 4000000000000000000;
-// m; floats are coarser than the Earth is large beyond it.
-constexpr double kMaxPosition = 1e9;
-
-bool IsUsableTime(Time time) { return time.count() >= -kMaxTime && time.count() <= kMaxTime; }
-
-bool IsUsablePose(const TimedPose& pose) {
-  const Eigen::Matrix3d R = pose.T_local_laser.linear();
-  const Eigen::Vector3d position = pose.T_local_laser.translation();
-  if (!IsUsableTime(pose.time) || !R.allFinite() || !position.allFinite()) return false;
-  constexpr double kTolerance = 1e-3;
-  const bool orthonormal =
-      (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance;
-  return orthonormal && R.determinant() > 0.0 && position.cwiseAbs().maxCoeff() <= kMaxPosition;
-}
-
 // True when of two earlier times of a stream's clock, before and after a jump, this one belongs to
 // the time before.
 bool BelongsBefore(Time time, Time before_jump, Time after_jump) {

@@ -33,6 +33,12 @@ class SweepAssembler {
   // poses and times, so that input of any time may follow. Counters go on.
   std::vector<Sweep> Finish();
 
+  // What the sweep at hand has grown by since the last call, when that lasts min_duration (s) or
+  // longer; sweeps do not depend on whether this is called. To be called after each input.
+  std::optional<SweepGrowth> TakeGrowth(double min_duration) {
+    return collector_.TakeGrowth(min_duration);
+  }
+
   // True while a sweep is being collected.
   bool collecting() const { return !collector_.empty() || !waiting_.empty(); }
   SweepCounters counters() const;

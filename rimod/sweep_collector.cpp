@@ -131,6 +131,28 @@ void SweepCollector::EndAt(std::size_t num_lines, const std::string& incomplete_
   DropLines(num_lines);
 }
 
+std::optional<SweepGrowth> SweepCollector::TakeGrowth(double min_duration) {
+  // Lines behind the extreme may belong to the next sweep, or to none.
+  if (direction_ == 0 || num_grown_ > extreme_) return std::nullopt;
+  std::size_t sweep_first = 0;
+  while (sweep_first < extreme_ && LineRests(lines_[sweep_first])) ++sweep_first;
+  const std::size_t first = std::max(num_grown_, sweep_first);
+  std::size_t last = extreme_ + 1;
+  while (last > first && LineRests(lines_[last - 1])) --last;  // they may be its idle end
+  if (last == first || Seconds(lines_[last - 1].end - lines_[first].begin) < min_duration)
+    return std::nullopt;
+  SweepGrowth growth;
+  growth.sweep_begin = lines_[sweep_first].begin;
+  growth.step = growth_step_++;
+  growth.begin = lines_[first].begin;
+  growth.end = lines_[last - 1].end;
+  growth.num_lines = static_cast<int>(last - first);
+  growth.scan = CopyScan(first, last);
+  growth.scan.T_local_sensor = SensorPose(sweep_first, last);
+  num_grown_ = last;
+  return growth;
+}
+
 Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::string& reason) {
   Sweep sweep;
   sweep.begin = lines_[first].begin;
@@ -157,13 +179,17 @@ Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::
 }
 
 Scan SweepCollector::TakeScan(std::size_t first, std::size_t last) {
+  if (first > 0 || last < lines_.size()) return CopyScan(first, last);
   Scan scan;
   scan.T_local_sensor = SensorPose(first, last);
-  if (first == 0 && last == lines_.size()) {  // all there is: no copy
-    scan.points = std::move(points_);
-    scan.no_return_directions = std::move(no_return_directions_);
-    return scan;
-  }
+  scan.points = std::move(points_);
+  scan.no_return_directions = std::move(no_return_directions_);
+  return scan;
+}
+
+Scan SweepCollector::CopyScan(std::size_t first, std::size_t last) const {
+  Scan scan;
+  scan.T_local_sensor = SensorPose(first, last);
   const auto end_of = [&](std::size_t Line::*start, std::size_t all) {
     return last < lines_.size() ? lines_[last].*start : all;
   };
@@ -214,6 +240,8 @@ void SweepCollector::DropLines(std::size_t num_lines) {
   direction_ = 0;
   extreme_ = 0;
   rest_anchor_ = 0;
+  num_grown_ = 0;
+  growth_step_ = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) FollowTilt(i);
 }
 

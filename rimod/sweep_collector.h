@@ -23,6 +23,11 @@ class SweepCollector {
   // Ends the sweep at hand. A reason makes it incomplete; an empty one leaves that to its contents.
   void End(const std::string& incomplete_reason, std::vector<Sweep>* ended);
 
+  // What the sweep at hand has grown by since the last call, when that lasts min_duration (s) or
+  // longer. All growths of a sweep, one after the other, are its beginning, or all of it. Changes
+  // nothing of the sweep itself.
+  std::optional<SweepGrowth> TakeGrowth(double min_duration);
+
   bool empty() const { return lines_.empty(); }
   // Beginning of the newest line, nothing when there is none in the sweep at hand.
   std::optional<Time> newest() const;
@@ -51,6 +56,7 @@ class SweepCollector {
   // Of the lines [first, last); may leave the lists of points empty.
   Sweep TakeSweep(std::size_t first, std::size_t last, const std::string& reason);
   Scan TakeScan(std::size_t first, std::size_t last);
+  Scan CopyScan(std::size_t first, std::size_t last) const;
   Eigen::Isometry3d SensorPose(std::size_t first, std::size_t last) const;
   void DropLines(std::size_t num_lines);
 
@@ -62,6 +68,9 @@ class SweepCollector {
   int direction_ = 0;            // of the tilt in this sweep: -1, 0 = not known yet, +1
   std::size_t extreme_ = 0;      // line that reached farthest in this direction
   std::size_t rest_anchor_ = 0;  // line since which the tilt has stayed where it was
+
+  std::size_t num_grown_ = 0;  // lines, from the first, that growths have told
+  int growth_step_ = 0;        // of the next growth
 
   std::int64_t idle_lines_ = 0;
   std::int64_t missing_lines_ = 0;

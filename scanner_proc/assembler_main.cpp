@@ -11,19 +11,27 @@ int main(int argc, char** argv) {
       "Joins the lines of a tilting 2D laser into 3D scans.\n"
       "Reads bot_core.planar_lidar_t on LASER (one line each) and bot_core.rigid_transform_t on\n"
       "LASER_TO_LOCAL (where the laser is); sends rimod.scan_t on RIMOD_SCAN at the end of each "
-      "sweep\nof the tilt, and rimod.status_t on RIMOD_STATUS once a second.",
+      "sweep\nof the tilt, and rimod.status_t on RIMOD_STATUS once a second. With --early also "
+      "what "
+      "each sweep\nhas grown by, rimod.partial_scan_t on RIMOD_SCAN_PARTIAL, for detections before "
+      "its end.",
       "rimod-assembler");
   rimod::CommonOptions common;
   rimod::BusOptions bus;
   rimod::AddCommonOptions(&app, &common);
   rimod::AddBusOptions(&app, &bus);
+  bool early = false;
+  app.add_flag("--early", early,
+               "Send growing scans, too, every early.period of the configuration: extractor and "
+               "matcher then\ntell on RIMOD_DETECTIONS_EARLY what they find before a sweep ends");
   if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
   rimod::LogToStderr(app.get_name());
 
   const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
-  rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration);
+  rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
+                                  early);
   constexpr auto kIdlePeriod =
       std::chrono::milliseconds(10);  // the end of a sweep is seen late by that
   const bool stopped = rimod::RunBus(

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/laser_messages.h"
+#include "io/partial_messages.h"
 #include "io/scan_messages.h"
 
 namespace rimod {
@@ -22,8 +23,11 @@ StampedScan ToStampedScan(const Sweep& sweep) {
 }  // namespace
 
 AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                                   const Configuration& configuration)
+                                   const Configuration& configuration, bool tell_growth)
     : scan_channel_(channels.scan),
+      partial_scan_channel_(channels.partial_scan),
+      tell_growth_(tell_growth),
+      growth_period_(configuration.pipeline.early.period),
       idle_time_(configuration.bus.idle_time),
       quiet_time_(configuration.bus.quiet_time),
       assembler_(configuration.pipeline.sweep),
@@ -45,6 +49,7 @@ std::string AssemblerProcess::OnLine(const bot_core::planar_lidar_t& message) {
   const std::vector<Sweep> sweeps = assembler_.AddLine(std::move(*line.line));
   assembly_time_ += Clock::now() - last_input_;
   PublishEnded(sweeps);
+  PublishGrowth();
   return "";
 }
 
@@ -55,6 +60,7 @@ std::string AssemblerProcess::OnPose(const bot_core::rigid_transform_t& message)
   const std::vector<Sweep> sweeps = assembler_.AddPose(*pose.pose);
   assembly_time_ += Clock::now() - last_input_;
   PublishEnded(sweeps);
+  PublishGrowth();
   return "";
 }
 
@@ -123,6 +129,12 @@ void AssemblerProcess::PublishScan(const Sweep& sweep) {
   status_.AddStageTimes({{"assembly", elapsed.count()}});
   spdlog::info("scan {}: {} lines, {} points", sweep.begin.count(), sweep.num_lines,
                sweep.scan.points.size());
+}
+
+void AssemblerProcess::PublishGrowth() {
+  if (!tell_growth_) return;
+  const std::optional<SweepGrowth> growth = assembler_.TakeGrowth(growth_period_);
+  if (growth) publisher_.PublishAll(partial_scan_channel_, ToPartialSections(*growth));
 }
 
 void AssemblerProcess::ReportCounters() {

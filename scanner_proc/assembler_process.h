@@ -18,12 +18,13 @@
 
 namespace rimod {
 
-// Laser lines and poses in, a scan out at the end of each sweep.
+// Laser lines and poses in, a scan out at the end of each sweep; on demand also what a sweep has
+// grown by, every early.period of it.
 class AssemblerProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process.
   AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                   const Configuration& configuration);
+                   const Configuration& configuration, bool tell_growth = false);
 
   // To be called many times a second: sends the scan of a sweep as soon as its lines stop, ends the
   // sweep when nothing comes any more, reports.
@@ -37,6 +38,7 @@ class AssemblerProcess {
   void PublishEnded(const std::vector<Sweep>& sweeps);
   void PublishUnended();
   void PublishScan(const Sweep& sweep);
+  void PublishGrowth();
   void ReportCounters();
 
   using Clock = std::chrono::steady_clock;
@@ -46,6 +48,9 @@ class AssemblerProcess {
   };
 
   const std::string scan_channel_;
+  const std::string partial_scan_channel_;
+  const bool tell_growth_;
+  const double growth_period_;  // s
   const std::chrono::duration<double> idle_time_, quiet_time_;
   SweepAssembler assembler_;
   Clock::duration assembly_time_{0};  // spent on the sweep at hand

@@ -1,0 +1,37 @@
+#include "rimod/growing_scan.h"
+
+#include <cstddef>
+
+namespace rimod {
+namespace {
+
+// 240 MB of points, the most that a sweep may have (SweepCollector).
+constexpr std::size_t kMaxPoints = 20000000;
+
+}  // namespace
+
+bool GrowingScan::Add(const SweepGrowth& growth) {
+  if (growth.step == 0) {
+    scan_ = growth.scan;
+  } else {
+    if (!scan_) return false;
+    const bool is_next = growth.sweep_begin == sweep_begin_ && growth.step == next_step_;
+    const std::size_t size = scan_->points.size() + scan_->no_return_directions.size() +
+                             growth.scan.points.size() + growth.scan.no_return_directions.size();
+    if (!is_next || size > kMaxPoints) {
+      scan_.reset();
+      return false;
+    }
+    scan_->T_local_sensor = growth.scan.T_local_sensor;
+    scan_->points.insert(scan_->points.end(), growth.scan.points.begin(), growth.scan.points.end());
+    scan_->no_return_directions.insert(scan_->no_return_directions.end(),
+                                       growth.scan.no_return_directions.begin(),
+                                       growth.scan.no_return_directions.end());
+  }
+  sweep_begin_ = growth.sweep_begin;
+  end_ = growth.end;
+  next_step_ = growth.step + 1;
+  return true;
+}
+
+}  // namespace rimod
