@@ -5,8 +5,8 @@ namespace rimod {
 // Detections while a sweep still goes on (not in the paper, whose robot stands still for one).
 struct EarlyParams {
   double period = 1.0;            // s of a sweep after which it is looked at anew; 0.05 .. 3600
-  double max_unseen_share = 0.1;  // of an object's near side that was not swept yet; 0 .. 1
-  double min_score = 0.5;         // of a detection to be told early; 0 .. 1
+  double max_unseen_share = 0.2;  // of an object's near side that was not swept yet; 0 .. 1
+  double min_score = 0.9;         // of a detection to be told early; 0 .. 1
   int min_sightings = 1;          // .. in so many looks in a row; 1 .. 100
   int max_misses = 1;  // looks in a row that may miss an object before it is withdrawn; 0 .. 100
   double same_object_distance =

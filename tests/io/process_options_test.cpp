@@ -97,9 +97,9 @@ TEST(ChannelsTest, NamesMayBeSwapped) {
   EXPECT_EQ(channels.laser, "RIMOD_SCAN");
 }
 
-TEST(ChannelsTest, ThereAreNineChannelsAllDifferent) {
+TEST(ChannelsTest, ThereAreThirteenChannelsAllDifferent) {
   std::vector<std::string> names = DefaultChannelNames();
-  EXPECT_EQ(names.size(), 9u);
+  EXPECT_EQ(names.size(), 13u);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());
 }

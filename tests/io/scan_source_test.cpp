@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "io/cloud_messages.h"
 #include "io/point_cloud_file.h"
 #include "tests/io/laser_logs.h"
 #include "tests/io/random_values.h"
@@ -82,6 +85,61 @@ TEST(ScanSourceTest, SeveralSweepsAreNumbered) {
   for (std::size_t i = 1; i < source.scans.size(); ++i) {
     EXPECT_GT(source.scans[i].utime, source.scans[i - 1].utime);
   }
+}
+
+TEST(ScanSourceTest, GrowthOfSweepsIsToldBeforeTheScan) {
+  const TemporaryFolder folder;
+  ScanSourceParams params;
+  params.growth_period = 0.2;
+  std::vector<std::string> told;
+  params.on_growth = [&](const SweepGrowth& growth) {
+    told.push_back(std::to_string(growth.sweep_begin.count()));
+  };
+  std::vector<std::string> scans;
+  ReadScans(WriteSwingLog(folder, "two", 2), params,
+            [&](const NamedScan& scan) { scans.push_back(std::to_string(scan.utime)); });
+  ASSERT_EQ(scans.size(), 2u);
+  for (const std::string& scan : scans) EXPECT_GE(std::count(told.begin(), told.end(), scan), 3);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+}
+
+TEST(ScanSourceTest, PointCloudsOfALogAreScansPlacedByThePosesOfTheirCarrier) {
+  const TemporaryFolder folder;
+  EventLogWriter log(folder.PathOf("lidar"));
+  RandomValues random(3);
+  std::vector<SensorCloud> clouds;
+  for (int i = 0; i < 3; ++i) {
+    TimedPose pose;
+    pose.time = Time(1'000'000 + i * 100'000);
+    pose.T_local_laser.translation().x() = i;
+    WriteMessage(&log, "BODY_TO_LOCAL", pose.time.count(), ToMessage(pose));
+    SensorCloud cloud;
+    cloud.time = pose.time;
+    for (int k = 0; k < 10; ++k) cloud.points.push_back(random.Vector(5.0).cast<float>());
+    clouds.push_back(cloud);
+    WriteMessage(&log, "VELODYNE", cloud.time.count(), ToMessage(cloud, "velodyne"));
+  }
+  log.Write(2'000'000, "VELODYNE", "nonsense", 8);
+  ASSERT_EQ(log.Close(), "");
+  ScanSourceParams params;
+  params.cloud_channels = {"VELODYNE", "BODY_TO_LOCAL"};
+  params.cloud.mount_z = 2.0;
+  Source source;
+  source.report = ReadScans(folder.PathOf("lidar"), params,
+                            [&](NamedScan scan) { source.scans.push_back(std::move(scan)); });
+  EXPECT_EQ(source.errors(), "");
+  EXPECT_TRUE(Mentions(source.warnings(), {"lidar", "1 messages", "VELODYNE"}));
+  ASSERT_EQ(source.names(), (Strings{"lidar#0", "lidar#1", "lidar#2"}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(source.scans[i].utime, clouds[i].time.count());
+    const Eigen::Vector3f moved =
+        clouds[i].points[4] + Eigen::Vector3f(static_cast<float>(i), 0, 2);
+    EXPECT_LT((source.scans[i].scan.points.at(4) - moved).norm(), 1e-5f);
+  }
+  params.cloud_channels = {"OTHER", ""};
+  EXPECT_TRUE(
+      Mentions(ReadScans(folder.PathOf("lidar"), params, [](const NamedScan&) {}).errors.at(0),
+               {"lidar", "no usable point cloud", "OTHER"}));
 }
 
 TEST(ScanSourceTest, SweepsBeforeATruncatedEndAreUsedAndTheDamageIsAnError) {

@@ -101,6 +101,58 @@ TEST(NewestWorkerTest, WhatWaitsAtTheEndIsLeftUndone) {
   EXPECT_EQ(done, std::vector<int>{0});
 }
 
+TEST(NewestWorkerTest, ItemsOfTheSecondRankWaitForAllOthersAndTheNewestWins) {
+  std::promise<void> started, release, finished;
+  std::vector<int> done;
+  int num_overtaken = 0;
+  {
+    NewestWorker<int> worker(
+        2, [] {},
+        [&](int item) {
+          if (item == 0) {
+            started.set_value();
+            release.get_future().wait();
+          }
+          done.push_back(item);
+          if (item == 12) finished.set_value();
+        });
+    worker.Give(0);
+    started.get_future().wait();
+    for (const int item : {10, 11, 12}) num_overtaken += worker.GiveWhenIdle(item);
+    for (const int item : {1, 2}) EXPECT_EQ(worker.Give(item), 0);
+    release.set_value();
+    finished.get_future().wait();
+  }
+  EXPECT_EQ(done, (std::vector<int>{0, 1, 2, 12}));
+  EXPECT_EQ(num_overtaken, 2);
+}
+
+TEST(NewestWorkerTest, WorkOfTheSecondRankHearsThatItIsInTheWay) {
+  std::promise<void> started, finished;
+  std::vector<int> done;
+  NewestWorker<int>* running = nullptr;
+  NewestWorker<int> worker(
+      1, [] {},
+      [&](int item) {
+        if (item == 10) {
+          EXPECT_FALSE(running->wanted());
+          started.set_value();
+          while (!running->wanted()) std::this_thread::yield();
+        }
+        done.push_back(item);
+        if (item == 1) {
+          EXPECT_FALSE(running->wanted());
+          finished.set_value();
+        }
+      });
+  running = &worker;
+  worker.GiveWhenIdle(10);
+  started.get_future().wait();
+  worker.Give(1);
+  finished.get_future().wait();
+  EXPECT_EQ(done, (std::vector<int>{10, 1}));
+}
+
 TEST(StoppableExecutionTest, RunsAsBeforeWhileNotStopped) {
   ThreadPool pool(3);
   const std::atomic<bool> stop = false;

@@ -27,13 +27,14 @@ constexpr milliseconds kLong(20000);
 
 class HostileMessagesTest : public ::testing::Test {
  protected:
-  void Start(const std::string& executable) {
+  void Start(const std::string& executable, const std::vector<std::string>& more = {}) {
     executable_ = executable;
     const std::string config = folder_.Write(
         "quick.yaml", "bus:\n  idle_time: 0.3\n  join_patience: 0.5\n  max_waiting_scans: 100\n");
-    process_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{std::string(RIMOD_BIN_DIR) + "/" + executable, "--config", config},
-        folder_.PathOf("output"));
+    std::vector<std::string> words = {std::string(RIMOD_BIN_DIR) + "/" + executable, "--config",
+                                      config};
+    words.insert(words.end(), more.begin(), more.end());
+    process_ = std::make_unique<ChildProcess>(words, folder_.PathOf("output"));
     ASSERT_TRUE(bus_.ListenUntil([this] { return Status().has_value(); }, kLong))
         << process_->Output();
   }
@@ -191,6 +192,95 @@ TEST_F(HostileMessagesTest, Extractor) {
   const std::int64_t utime = expected.scan.utime;
   ExpectReceived("RIMOD_RANGE_IMAGE", utime, SumsOf(ToSections(expected.image, utime)));
   ExpectReceived("RIMOD_FEATURES", utime, SumsOf(ToSections(expected.features, utime)));
+  ExpectStopsCleanly();
+}
+
+TEST_F(HostileMessagesTest, ExtractorOfClouds) {
+  Start("rimod-extractor", {"--cloud-channel", "LIDAR", "--cloud-pose-channel", "BODY_TO_LOCAL"});
+  SendWrongBytes<bot_core::pointcloud2_t>("LIDAR");
+  SendWrongBytes<bot_core::rigid_transform_t>("BODY_TO_LOCAL");
+
+  const SensorCloud cloud = {Time(1'000'000'000), RandomValues(1).AScan(3000, 0).points};
+  const bot_core::pointcloud2_t good = ToMessage(cloud, "lidar");
+  for (const std::int32_t number : {INT32_MIN, -1, 0, 5, INT32_MAX}) {
+    for (std::int32_t bot_core::pointcloud2_t::*const field :
+         {&bot_core::pointcloud2_t::height, &bot_core::pointcloud2_t::width,
+          &bot_core::pointcloud2_t::point_step, &bot_core::pointcloud2_t::row_step}) {
+      bot_core::pointcloud2_t bad = good;
+      bad.*field = number;
+      bad.utime = 500;
+      Send("LIDAR", EncodeMessage(bad));
+    }
+    bot_core::pointcloud2_t bad = good;
+    bad.fields[1].offset = number == 0 ? 1 << 20 : number;
+    bad.utime = 500;
+    Send("LIDAR", EncodeMessage(bad));
+  }
+  for (const std::int64_t utime : {INT64_MIN, INT64_MAX, std::int64_t{0}, std::int64_t{-1}}) {
+    bot_core::pointcloud2_t bad = good;
+    bad.utime = utime;
+    for (std::uint8_t& byte : bad.data) byte = 0xff;  // not a number
+    Send("LIDAR", EncodeMessage(bad));
+    TimedPose pose;
+    pose.time = Time(utime);
+    Send("BODY_TO_LOCAL", EncodeMessage(ToMessage(pose)));
+  }
+  ExpectAliveAndCounting(40);
+
+  TimedPose pose = {cloud.time, Placed(1.0, 2.0, 0.5, 0.3)};
+  const bot_core::rigid_transform_t pose_message = ToMessage(pose);
+  bus_.Publish("BODY_TO_LOCAL", pose_message);
+  bus_.Publish("LIDAR", good);
+  const PipelineParams params = DefaultConfiguration(Method::kDefault).pipeline;
+  CloudPlacer placer(params.cloud, /*with_poses=*/true);
+  placer.AddPose(*FromMessage(pose_message).pose);
+  const std::vector<PlacedCloud> placed = placer.AddCloud(cloud);
+  ASSERT_EQ(placed.size(), 1u);
+  const RangeImage image = ComputeRangeImage(placed[0].scan, params, Execution());
+  const FeatureSet features = ExtractFeatures(image, params, Execution());
+  const std::int64_t utime = cloud.time.count();
+  ExpectReceived("RIMOD_RANGE_IMAGE", utime, SumsOf(ToSections(image, utime)));
+  ExpectReceived("RIMOD_FEATURES", utime, SumsOf(ToSections(features, utime)));
+  ExpectStopsCleanly();
+}
+
+TEST_F(HostileMessagesTest, PartialScans) {
+  Start("rimod-extractor");
+  SendWrongBytes<partial_scan_t>("RIMOD_SCAN_PARTIAL");
+  const Expected expected(1'000'000'000);
+  SweepGrowth growth;
+  growth.sweep_begin = growth.begin = growth.end = Time(expected.scan.utime);
+  growth.scan = expected.scan.scan;
+  partial_scan_t bad = ToPartialSections(growth)[0];
+  for (const std::int32_t step : {INT32_MIN, -1, 1, INT32_MAX}) {
+    bad.step = step;
+    bad.section.num_sections = 1;
+    bad.section.utime = bad.section.utime_end = expected.scan.utime + step;
+    Send("RIMOD_SCAN_PARTIAL", EncodeMessage(bad));
+  }
+  ExpectAliveAndCounting(30);
+  EXPECT_TRUE(bus_.Bytes("RIMOD_RANGE_IMAGE_PARTIAL").empty());
+  bus_.PublishAll("RIMOD_SCAN", ToSections(expected.scan));
+  const std::int64_t utime = expected.scan.utime;
+  ExpectReceived("RIMOD_FEATURES", utime, SumsOf(ToSections(expected.features, utime)));
+  ExpectStopsCleanly();
+}
+
+TEST_F(HostileMessagesTest, PartialImagesAndFeatures) {
+  Start("rimod-matcher");
+  SendWrongBytes<partial_range_image_t>("RIMOD_RANGE_IMAGE_PARTIAL");
+  SendWrongBytes<partial_feature_set_t>("RIMOD_FEATURES_PARTIAL");
+  const Expected expected(1'000'000'000);
+  FeatureSet foreign = expected.features;
+  foreign.descriptor_kind = "of another kind";
+  for (const auto& section : ToPartialSections(foreign, 5, 6)) {
+    Send("RIMOD_FEATURES_PARTIAL", EncodeMessage(section));
+  }
+  for (const auto& section : ToPartialSections(expected.image, 5, 6)) {
+    Send("RIMOD_RANGE_IMAGE_PARTIAL", EncodeMessage(section));
+  }
+  ExpectAliveAndCounting(30);
+  EXPECT_TRUE(bus_.Bytes("RIMOD_DETECTIONS_EARLY").empty());
   ExpectStopsCleanly();
 }
 

@@ -112,12 +112,25 @@ const std::vector<RealField>& RealFields() {
       REAL(choice, max_explained_share, -0.1, 1.1),
       REAL(choice, same_class_distance, -0.1, 10.1),
       REAL(choice, other_class_distance, -0.1, 10.1),
+      REAL(cloud, mount_x, -1001.0, 1001.0),
+      REAL(cloud, mount_y, -1001.0, 1001.0),
+      REAL(cloud, mount_z, -1001.0, 1001.0),
+      REAL(cloud, mount_roll, -6.3, 6.3),
+      REAL(cloud, mount_pitch, -6.3, 6.3),
+      REAL(cloud, mount_yaw, -6.3, 6.3),
+      REAL(cloud, max_pose_gap, 0.0, 3601.0),
+      REAL(early, period, 0.0, 3601.0),
+      REAL(early, max_unseen_share, -0.1, 1.1),
+      REAL(early, min_score, -0.1, 1.1),
+      REAL(early, same_object_distance, -0.1, 10.1),
   };
   return fields;
 }
 
 const std::vector<CountField>& CountFields() {
   static const std::vector<CountField> fields = {
+      COUNT(early, min_sightings, 0, 101),
+      COUNT(early, max_misses, -1, 101),
       COUNT(interest_points, max_points, 0, -1),
       COUNT(interest_points, max_points_a_cube, -1),
       COUNT(interest_points, harris_window, 1, 16),

@@ -5,9 +5,12 @@
 
 #include "bot_core/planar_lidar_t.hpp"
 #include "bot_core/rigid_transform_t.hpp"
+#include "io/cloud_messages.h"
 #include "io/detection_messages.h"
+#include "io/early_messages.h"
 #include "io/feature_messages.h"
 #include "io/laser_messages.h"
+#include "io/partial_messages.h"
 #include "io/range_image_messages.h"
 #include "io/scan_messages.h"
 #include "rimod/object_model_t.hpp"
@@ -97,6 +100,31 @@ inline detections_t SampleMessage() {
   detections.detections[0].class_name = "chair";
   detections.stage_times = {{"matching", 1.0}};
   return ToMessage(detections);
+}
+template <>
+inline bot_core::pointcloud2_t SampleMessage() {
+  return ToMessage(SensorCloud{Time(1), {{1.0f, 2.0f, 3.0f}, {4.0f, 5.0f, 6.0f}}}, "camera");
+}
+template <>
+inline partial_scan_t SampleMessage() {
+  SweepGrowth growth;
+  growth.scan = RandomValues(1).AScan(5, 3);
+  return ToPartialSections(growth)[0];
+}
+template <>
+inline partial_range_image_t SampleMessage() {
+  return ToPartialSections(RandomValues(1).AnImage(5, 4), 3, 4)[0];
+}
+template <>
+inline partial_feature_set_t SampleMessage() {
+  return ToPartialSections(RandomValues(1).Features(3, 8), 3, 4)[0];
+}
+template <>
+inline early_detections_t SampleMessage() {
+  StampedEarlyObjects early;
+  early.objects.resize(2);
+  early.objects[1].detection.class_name = "chair";
+  return ToMessage(early);
 }
 template <>
 inline status_t SampleMessage() {

@@ -3,6 +3,8 @@
 //                                  CRC-32 of what it says (without wall times); RIMOD_STATUS left
 //                                  out
 //   log_digest detections LOG NAME a line a detection, as rimod-detect prints it for scan NAME
+//   log_digest early LOG NAME      the same of the final messages on RIMOD_DETECTIONS_EARLY
+//   log_digest told LOG            a line an object and message there: id, look or final, status
 #include <zlib.h>
 
 #include <cstdio>
@@ -14,7 +16,11 @@
 #include "io/event_log.h"
 #include "io/message_codec.h"
 #include "rimod/detections_t.hpp"
+#include "rimod/early_detections_t.hpp"
 #include "rimod/feature_set_t.hpp"
+#include "rimod/partial_feature_set_t.hpp"
+#include "rimod/partial_range_image_t.hpp"
+#include "rimod/partial_scan_t.hpp"
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
 #include "rimod/scan_t.hpp"
@@ -38,6 +44,13 @@ void PrintMessage(const LogEvent& event, const Message& message, int section, in
               section, num_sections, checksum);
 }
 
+// The section within names the growth or the look.
+template <typename Message>
+void PrintPartial(const LogEvent& event) {
+  const auto& section = Decode<Message>(event).section;
+  PrintMessage(event, section, section.section, section.num_sections);
+}
+
 template <typename Message>
 void PrintSection(const LogEvent& event) {
   const Message message = Decode<Message>(event);
@@ -52,6 +65,12 @@ void PrintDigest(const LogEvent& event) {
     PrintSection<range_image_t>(event);
   } else if (event.channel == channels.features) {
     PrintSection<feature_set_t>(event);
+  } else if (event.channel == channels.partial_scan) {
+    PrintPartial<partial_scan_t>(event);
+  } else if (event.channel == channels.partial_range_image) {
+    PrintPartial<partial_range_image_t>(event);
+  } else if (event.channel == channels.partial_features) {
+    PrintPartial<partial_feature_set_t>(event);
   } else if (event.channel == channels.hypotheses) {
     PrintMessage(event, Decode<pose_hypotheses_t>(event), 0, 1);
   } else if (event.channel == channels.detections) {
@@ -66,14 +85,34 @@ void PrintDigest(const LogEvent& event) {
   }
 }
 
+void PrintDetection(const detection_t& d, const std::string& name) {
+  nlohmann::ordered_json line = {{"scan", name}, {"class", d.class_name}};
+  line["pose"] = {d.position[0],    d.position[1],    d.position[2],   d.orientation[0],
+                  d.orientation[1], d.orientation[2], d.orientation[3]};
+  line["score"] = d.score;
+  std::printf("%s\n", line.dump().c_str());
+}
+
 void PrintDetections(const LogEvent& event, const std::string& name) {
   if (event.channel != Channels().detections) return;
-  for (const detection_t& d : Decode<detections_t>(event).detections) {
-    nlohmann::ordered_json line = {{"scan", name}, {"class", d.class_name}};
-    line["pose"] = {d.position[0],    d.position[1],    d.position[2],   d.orientation[0],
-                    d.orientation[1], d.orientation[2], d.orientation[3]};
-    line["score"] = d.score;
-    std::printf("%s\n", line.dump().c_str());
+  for (const detection_t& d : Decode<detections_t>(event).detections) PrintDetection(d, name);
+}
+
+void PrintEarly(const LogEvent& event, const std::string& name) {
+  if (event.channel != Channels().early_detections) return;
+  const early_detections_t message = Decode<early_detections_t>(event);
+  for (const early_detection_t& d : message.detections) {
+    const bool withdrawn = d.status == early_detection_t::STATUS_WITHDRAWN;
+    if (message.is_final && !withdrawn) PrintDetection(d.detection, name);
+  }
+}
+
+void PrintTold(const LogEvent& event) {
+  if (event.channel != Channels().early_detections) return;
+  const early_detections_t message = Decode<early_detections_t>(event);
+  for (const early_detection_t& d : message.detections) {
+    std::printf("%lld %s %d\n", static_cast<long long>(d.id), message.is_final ? "final" : "look",
+                static_cast<int>(d.status));
   }
 }
 
@@ -83,13 +122,19 @@ void PrintDetections(const LogEvent& event, const std::string& name) {
 int main(int argc, char** argv) {
   const bool messages = argc == 3 && std::strcmp(argv[1], "messages") == 0;
   const bool detections = argc == 4 && std::strcmp(argv[1], "detections") == 0;
-  if (!messages && !detections) return 2;
+  const bool early = argc == 4 && std::strcmp(argv[1], "early") == 0;
+  const bool told = argc == 3 && std::strcmp(argv[1], "told") == 0;
+  if (!messages && !detections && !early && !told) return 2;
   rimod::EventLogReader log(argv[2]);
   while (const std::optional<rimod::LogEvent> event = log.Next()) {
     if (messages) {
       rimod::PrintDigest(*event);
-    } else {
+    } else if (detections) {
       rimod::PrintDetections(*event, argv[3]);
+    } else if (early) {
+      rimod::PrintEarly(*event, argv[3]);
+    } else {
+      rimod::PrintTold(*event);
     }
   }
 }

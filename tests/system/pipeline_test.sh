@@ -3,7 +3,9 @@
 # stock settings, and checks that
 #   - every message was recorded: all lines and poses, all sections of all that was sent;
 #   - the detections equal those of rimod-detect, to the bit;
-#   - the recorded log, replayed into each stage alone, gives the same messages again, to the bit.
+#   - the recorded log, replayed into each stage alone, gives the same messages again, to the bit;
+#   - with growing scans objects are told before the sweep has ended, with ids that stay, and
+#     everything else is as before, to the bit.
 # Exit code 77: cannot run here.
 #   pipeline_test.sh BIN LOG_DIGEST MODELS LOG
 set -u
@@ -42,6 +44,7 @@ run() {
   while [ "$1" != -- ]; do
     local name=$1 arguments=()
     [ "$name" = rimod-matcher ] && arguments=(--models "$models")
+    [ "$name" = rimod-assembler ] && arguments=(${assembler_arguments:-})
     "$bin/$name" "${arguments[@]}" 2>"$work/$name.err" &
     pids+=($!)
     awaits+=(--await "$name")
@@ -87,15 +90,20 @@ messages "$log" LASER LASER_TO_LOCAL >"$work/played"
 messages "$work/all" LASER LASER_TO_LOCAL >"$work/recorded"
 same "lines and poses played and recorded" "$work/played" "$work/recorded"
 
-"$digest" messages "$work/all" | awk '
-  /^RIMOD/ { split($3, part, "/"); key = $1 " " $2; total[key] = part[2]; ++seen[key]; ++channel[$1] }
-  END {
-    for (key in total) if (seen[key] != total[key]) { print key ": " seen[key] " of " total[key]; bad = 1 }
-    split("SCAN RANGE_IMAGE FEATURES HYPOTHESES DETECTIONS", names, " ")
-    for (i in names) if (!channel["RIMOD_" names[i]]) { print "nothing on RIMOD_" names[i]; bad = 1 }
-    exit bad
-  }' || fail "the logger missed messages"
-echo "every section was recorded"
+# complete RECORD NAMES: every section was recorded, and something on each channel.
+complete() {
+  "$digest" messages "$1" | awk -v names="$2" '
+    /^RIMOD/ { split($3, part, "/"); key = $1 " " $2; total[key] = part[2]; ++seen[key]; ++channel[$1] }
+    END {
+      for (key in total) if (seen[key] != total[key]) { print key ": " seen[key] " of " total[key]; bad = 1 }
+      split(names, name, " ")
+      for (i in name) if (!channel["RIMOD_" name[i]]) { print "nothing on RIMOD_" name[i]; bad = 1 }
+      exit bad
+    }' || fail "the logger missed messages"
+  echo "every section was recorded"
+}
+outputs="SCAN RANGE_IMAGE FEATURES HYPOTHESES DETECTIONS"
+complete "$work/all" "$outputs"
 
 "$bin/rimod-detect" --models "$models" "$log" >"$work/offline" 2>"$work/rimod-detect.err" ||
   fail "rimod-detect"
@@ -116,3 +124,23 @@ replay() {
 replay rimod-assembler 'LASER|LASER_TO_LOCAL' RIMOD_SCAN
 replay rimod-extractor 'RIMOD_SCAN' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
 replay rimod-matcher 'RIMOD_RANGE_IMAGE|RIMOD_FEATURES' 'RIMOD_HYPOTHESES RIMOD_DETECTIONS'
+
+echo "== with growing scans"
+awaited=RIMOD_DETECTIONS
+assembler_arguments=--early run "$work/early" rimod-assembler rimod-extractor rimod-matcher -- "$log"
+complete "$work/early" "$outputs SCAN_PARTIAL RANGE_IMAGE_PARTIAL FEATURES_PARTIAL"
+for name in $outputs; do
+  messages "$work/all" "RIMOD_$name" >"$work/before"
+  messages "$work/early" "RIMOD_$name" >"$work/again"
+  same "RIMOD_$name with and without growing scans" "$work/before" "$work/again"
+done
+"$digest" early "$work/early" "$(basename "$log" .lcm)" >"$work/final"
+same "what is told in the end and offline" "$work/final" "$work/offline"
+"$digest" told "$work/early" | awk '
+  $2 == "look" { looked[$1] = 1; ++num }
+  $2 == "final" { final[$1] = 1 }
+  END {
+    for (id in looked) if (!(id in final)) { print "object " id " is not in the final message"; bad = 1 }
+    print num + 0 " objects told in looks"
+    exit bad || !num
+  }' || fail "what was told early"
