@@ -43,7 +43,9 @@ ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
       publisher_(out, configuration.bus),
       last_scan_(kNoScan),
       worker_(
-          configuration.bus.max_waiting_scans, [] {}, [this](const Job& job) { Work(job); }) {
+          configuration.bus.max_waiting_scans,
+          // Scans wait here, where the newest wins, and not as messages that nobody overtakes.
+          [this] { publisher_.Flush(); }, [this](const Job& job) { Work(job); }) {
   const SubscriptionObserver observer = status_.MakeObserver();
   subscriptions_.push_back(
       SubscribeTo<scan_t>(in, channels.scan, kQueueCapacity, observer,

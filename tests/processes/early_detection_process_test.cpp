@@ -135,10 +135,10 @@ TEST_F(EarlyProcessTest, TheAssemblerTellsGrowthOnlyWhenAskedAndTheScanStaysTheS
 TEST_F(EarlyProcessTest, TheExtractorDescribesWhatIsKnownSoFar) {
   const auto extractor = Start("rimod-extractor");
   for (std::size_t i = 0; i < 2; ++i) {
-    bus_.PublishAll("RIMOD_SCAN_PARTIAL", ToPartialSections(room_.growths[i]));
     const auto [image, features] = room_.LookAfter(i + 1);
     const std::int64_t known_until = room_.growths[i].end.count();
     bus_.Forget();
+    bus_.PublishAll("RIMOD_SCAN_PARTIAL", ToPartialSections(room_.growths[i]));
     const auto images = SumsOf(ToPartialSections(image, room_.scan.utime, known_until));
     const auto sets = SumsOf(ToPartialSections(features, room_.scan.utime, known_until));
     bus_.ListenUntil(
