@@ -256,7 +256,7 @@ void MatcherProcess::WorkOnPartial(std::int64_t sweep_utime, const DescribedScan
   early_->utime = sweep_utime;
   early_->known_until = scan.utime;
   early_->T_local_sensor = scan.image.T_local_sensor();
-  early_->num_models = static_cast<int>(models_.size());
+  early_->num_models = static_cast<int>(database_->models().size());
   PublishEarly(/*is_final=*/false, tracker_.Update(Time(sweep_utime), Time(scan.utime), sightings));
   ++num_early_looks_;
   const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
