@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
       "Describes 3D scans: computes their range images and the features in them.\n"
       "Reads rimod.scan_t on RIMOD_SCAN; sends rimod.range_image_t on RIMOD_RANGE_IMAGE,\n"
       "rimod.feature_set_t on RIMOD_FEATURES and rimod.status_t on RIMOD_STATUS once a second.\n"
+      "While there is nothing else to do it describes growing scans, too, from "
+      "RIMOD_SCAN_PARTIAL.\n"
       "With --cloud-channel scans also come as bot_core.pointcloud2_t, from a sensor that delivers "
       "whole ones.\n"
       "Scans that come faster than they can be described overtake each other: the newest counts.",

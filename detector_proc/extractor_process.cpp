@@ -23,8 +23,8 @@ using Clock = std::chrono::steady_clock;
 // The handler only joins sections, so that few wait; some whole scans may.
 constexpr int kQueueCapacity = 1000;
 
-// Clouds may have megabytes. The handler takes milliseconds, and what it cannot take is lost without
-// being counted: ten seconds of a fast sensor.
+// Clouds may have megabytes. The handler takes milliseconds, and what it cannot take is lost
+// without being counted: ten seconds of a fast sensor.
 constexpr int kCloudQueueCapacity = 100;
 
 constexpr std::int64_t kNoScan = std::numeric_limits<std::int64_t>::min();

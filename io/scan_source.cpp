@@ -95,21 +95,56 @@ void AddSweeps(const std::string& path, std::vector<Sweep> sweeps, LogScans* sca
   }
 }
 
-// Tells what the assembler left out, as far as a good log has none of it.
-void ReportCounters(const std::string& path, const SweepCounters& counters,
-                    ScanSourceReport* report) {
+// Tells what was left out, as far as a good log has none of it.
+void ReportCounts(const std::string& path,
+                  const std::vector<std::pair<const char*, std::int64_t>>& counts,
+                  ScanSourceReport* report) {
   std::string text;
-  for (const auto& [name, count] : {std::pair("unusable lines", counters.bad_lines),
-                                    {"unusable poses", counters.bad_poses},
-                                    {"lines out of order", counters.unordered_lines},
-                                    {"poses out of order", counters.unordered_poses},
-                                    {"lines without pose", counters.lines_without_pose},
-                                    {"missing lines", counters.missing_lines},
-                                    {"unusable ranges", counters.bad_ranges},
-                                    {"jumps of the clock", counters.clock_jumps}}) {
+  for (const auto& [name, count] : counts) {
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
   }
   if (!text.empty()) report->warnings.push_back(path + ": " + text);
+}
+
+void ReportCounters(const std::string& path, const SweepCounters& counters,
+                    ScanSourceReport* report) {
+  ReportCounts(path,
+               {{"unusable lines", counters.bad_lines},
+                {"unusable poses", counters.bad_poses},
+                {"lines out of order", counters.unordered_lines},
+                {"poses out of order", counters.unordered_poses},
+                {"lines without pose", counters.lines_without_pose},
+                {"missing lines", counters.missing_lines},
+                {"unusable ranges", counters.bad_ranges},
+                {"jumps of the clock", counters.clock_jumps}},
+               report);
+}
+
+void ReportCounters(const std::string& path, const CloudCounters& counters,
+                    ScanSourceReport* report) {
+  ReportCounts(path,
+               {{"clouds of no time", counters.bad_clouds},
+                {"clouds out of order", counters.unordered_clouds},
+                {"clouds without pose", counters.clouds_without_pose},
+                {"unusable poses", counters.bad_poses},
+                {"poses out of order", counters.unordered_poses}},
+               report);
+}
+
+// What an event's message says; nothing where it cannot be used, which is counted. value: where the
+// result of FromMessage(Message) has it.
+template <typename Message, typename Result, typename Value>
+std::optional<Value> ValueOf(const LogEvent& event, std::optional<Value> Result::*value,
+                             Rejections* rejections) {
+  const Decoded<Message> decoded = DecodeMessage<Message>(event.bytes.data(), event.bytes.size());
+  Result result;
+  if (decoded.message) result = FromMessage(*decoded.message);
+  if (!(result.*value)) rejections->Add(event.channel, decoded.error + result.error);
+  return std::move(result.*value);
+}
+
+std::optional<TimedPose> PoseOf(const LogEvent& event, Rejections* rejections) {
+  return ValueOf<bot_core::rigid_transform_t>(event, &TimedPoseFromMessage::pose, rejections);
 }
 
 void AssembleLog(const std::string& path, const Channels& channels, const ScanSourceParams& params,
@@ -119,25 +154,12 @@ void AssembleLog(const std::string& path, const Channels& channels, const ScanSo
   Rejections rejections;
   while (const std::optional<LogEvent> event = log.Next()) {
     if (event->channel == channels.laser) {
-      const auto decoded =
-          DecodeMessage<bot_core::planar_lidar_t>(event->bytes.data(), event->bytes.size());
-      LaserLineFromMessage line;
-      if (decoded.message) line = FromMessage(*decoded.message);
-      if (line.line) {
-        AddSweeps(path, assembler.AddLine(std::move(*line.line)), scans, report);
-      } else {
-        rejections.Add(event->channel, decoded.error + line.error);
-      }
+      std::optional<LaserLine> line =
+          ValueOf<bot_core::planar_lidar_t>(*event, &LaserLineFromMessage::line, &rejections);
+      if (line) AddSweeps(path, assembler.AddLine(std::move(*line)), scans, report);
     } else if (event->channel == channels.laser_to_local) {
-      const auto decoded =
-          DecodeMessage<bot_core::rigid_transform_t>(event->bytes.data(), event->bytes.size());
-      TimedPoseFromMessage pose;
-      if (decoded.message) pose = FromMessage(*decoded.message);
-      if (pose.pose) {
-        AddSweeps(path, assembler.AddPose(*pose.pose), scans, report);
-      } else {
-        rejections.Add(event->channel, decoded.error + pose.error);
-      }
+      const std::optional<TimedPose> pose = PoseOf(*event, &rejections);
+      if (pose) AddSweeps(path, assembler.AddPose(*pose), scans, report);
     }
     if (!params.on_growth) continue;
     const std::optional<SweepGrowth> growth = assembler.TakeGrowth(params.growth_period);
@@ -147,19 +169,6 @@ void AssembleLog(const std::string& path, const Channels& channels, const ScanSo
   rejections.Report(path, report);
   ReportCounters(path, assembler.counters(), report);
   if (!log.error().empty()) report->errors.push_back(log.error());
-}
-
-void ReportCounters(const std::string& path, const CloudCounters& counters,
-                    ScanSourceReport* report) {
-  std::string text;
-  for (const auto& [name, count] : {std::pair("clouds of no time", counters.bad_clouds),
-                                    {"clouds out of order", counters.unordered_clouds},
-                                    {"clouds without pose", counters.clouds_without_pose},
-                                    {"unusable poses", counters.bad_poses},
-                                    {"poses out of order", counters.unordered_poses}}) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name;
-  }
-  if (!text.empty()) report->warnings.push_back(path + ": " + text);
 }
 
 // Places the point clouds of a log.
@@ -176,25 +185,12 @@ void PlaceClouds(const std::string& path, const ScanSourceParams& params, LogSca
   };
   while (const std::optional<LogEvent> event = log.Next()) {
     if (event->channel == channels.clouds) {
-      const auto decoded =
-          DecodeMessage<bot_core::pointcloud2_t>(event->bytes.data(), event->bytes.size());
-      SensorCloudFromMessage cloud;
-      if (decoded.message) cloud = FromMessage(*decoded.message);
-      if (cloud.cloud) {
-        add(placer.AddCloud(std::move(*cloud.cloud)));
-      } else {
-        rejections.Add(event->channel, decoded.error + cloud.error);
-      }
+      std::optional<SensorCloud> cloud =
+          ValueOf<bot_core::pointcloud2_t>(*event, &SensorCloudFromMessage::cloud, &rejections);
+      if (cloud) add(placer.AddCloud(std::move(*cloud)));
     } else if (event->channel == channels.poses) {
-      const auto decoded =
-          DecodeMessage<bot_core::rigid_transform_t>(event->bytes.data(), event->bytes.size());
-      TimedPoseFromMessage pose;
-      if (decoded.message) pose = FromMessage(*decoded.message);
-      if (pose.pose) {
-        add(placer.AddPose(*pose.pose));
-      } else {
-        rejections.Add(event->channel, decoded.error + pose.error);
-      }
+      const std::optional<TimedPose> pose = PoseOf(*event, &rejections);
+      if (pose) add(placer.AddPose(*pose));
     }
   }
   rejections.Report(path, report);
