@@ -1,0 +1,274 @@
+#include "viewer_tools/case_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "rimod/surface_rendering.h"
+#include "viewer_tools/labels.h"
+
+namespace rimod {
+namespace {
+
+constexpr int kSide = 270;                 // canvas pixels, of every picture in the row
+constexpr int kGap = 10;                   // canvas pixels between them and round everything
+constexpr int kLineHeight = 22;            // canvas pixels, of a line of text
+constexpr std::size_t kNumCompared = 2;    // poses with a picture of depth differences
+constexpr double kShownDifference = 0.20;  // m, at which the colours end
+const cv::Scalar kBackground(32, 30, 28);
+const cv::Scalar kAreaColour(20, 19, 18);
+const cv::Scalar kTextColour(230, 230, 230);
+
+// The pixels of the range image that a case shows.
+struct Window {
+  cv::Rect pixels;     // columns and rows; may reach beyond the image
+  double scale = 1.0;  // canvas pixels a range image pixel
+};
+
+Window FindWindow(const std::vector<RenderedModel>& rendered) {
+  cv::Rect all;
+  for (const RenderedModel& r : rendered) {
+    if (r.height <= 0 || r.width <= 0) continue;
+    const cv::Rect rect(r.first_column, r.first_row, r.width, r.height);
+    all = all.area() > 0 ? (all | rect) : rect;
+  }
+  constexpr int kMinMargin = 4;  // pixels
+  const int margin = std::max(kMinMargin, std::max(all.width, all.height) / 5);
+  const int side = std::max(all.width, all.height) + 2 * margin;
+  const cv::Point centre = (all.tl() + all.br()) / 2;
+  Window window;
+  window.pixels = cv::Rect(centre.x - side / 2, centre.y - side / 2, side, side);
+  window.scale = static_cast<double>(kSide) / side;
+  return window;
+}
+
+// Calls function(x, y, row, column) for every pixel of a picture; the pixel of the range image that
+// it shows may be outside.
+template <typename Function>
+void ForEachCanvasPixel(const Window& window, const Function& function) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      function(x, y, window.pixels.y + static_cast<int>(y / window.scale),
+               window.pixels.x + static_cast<int>(x / window.scale));
+}
+
+bool IsRendered(const RenderedModel& rendered, int row, int column) {
+  row -= rendered.first_row;
+  column -= rendered.first_column;
+  return row >= 0 && row < rendered.height && column >= 0 && column < rendered.width &&
+         rendered.point(row, column) >= 0;
+}
+
+struct RangeSpan {
+  double near = 0.5, far = 5.0;  // m
+  double Share(double range) const { return std::log(range / near) / std::log(far / near); }
+};
+
+RangeSpan FindSpan(const RangeImage& image, const Window& window) {
+  std::vector<float> ranges;
+  const cv::Rect inside = window.pixels & cv::Rect(0, 0, image.width(), image.height());
+  for (int row = inside.y; row < inside.br().y; ++row)
+    for (int column = inside.x; column < inside.br().x; ++column)
+      if (image.measured(row, column)) ranges.push_back(image.range(row, column));
+  if (ranges.empty()) return {};
+  std::sort(ranges.begin(), ranges.end());
+  const double near = ranges[ranges.size() / 50];
+  return {near, std::max<double>(ranges[ranges.size() - 1 - ranges.size() / 20], near * 1.1)};
+}
+
+Colour SceneColour(const RangeImage& image, int row, int column, const RangeSpan& span, int x,
+                   int y) {
+  if (!image.grid().Contains(row, column)) return NeverObservedColour(x, y);
+  switch (image.pixel(row, column)) {
+    case Pixel::kMeasured:
+      return RangeColour(span.Share(image.range(row, column)));
+    case Pixel::kNoReturn:
+      return NoReturnColour();
+    case Pixel::kNeverObserved:
+      break;
+  }
+  return NeverObservedColour(x, y);
+}
+
+void DrawOutline(const RenderedModel& rendered, const Window& window, const Colour& colour,
+                 cv::Mat* picture) {
+  cv::Mat_<unsigned char> mask(kSide, kSide, static_cast<unsigned char>(0));
+  ForEachCanvasPixel(window, [&](int x, int y, int row, int column) {
+    if (IsRendered(rendered, row, column)) mask(y, x) = 255;
+  });
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(mask, contours, cv::RETR_LIST, cv::CHAIN_APPROX_SIMPLE);
+  cv::drawContours(*picture, contours, -1, cv::Scalar(16, 16, 16), 3);
+  cv::drawContours(*picture, contours, -1, ToScalar(colour), 1);
+}
+
+cv::Mat DrawOutlines(const RangeImage& image, const std::vector<CasePose>& poses,
+                     const std::vector<RenderedModel>& rendered, const Window& window) {
+  cv::Mat picture(kSide, kSide, CV_8UC3);
+  const RangeSpan span = FindSpan(image, window);
+  ForEachCanvasPixel(window, [&](int x, int y, int row, int column) {
+    picture.at<Colour>(y, x) = SceneColour(image, row, column, span, x, y);
+  });
+  for (std::size_t i = poses.size(); i-- > 0;)
+    DrawOutline(rendered[i], window, poses[i].colour, &picture);
+  return picture;
+}
+
+cv::Mat DrawDifferences(const RangeImage& image, const RenderedModel& rendered,
+                        const Colour& outline, const Window& window) {
+  constexpr double kDimmed = 0.75;
+  const Colour dark(28, 26, 24);
+  cv::Mat picture(kSide, kSide, CV_8UC3);
+  const RangeSpan span = FindSpan(image, window);
+  ForEachCanvasPixel(window, [&](int x, int y, int row, int column) {
+    Colour colour = SceneColour(image, row, column, span, x, y);
+    if (!IsRendered(rendered, row, column)) {
+      colour = Blend(colour, dark, kDimmed);
+    } else if (image.grid().Contains(row, column) && image.measured(row, column)) {
+      colour = DepthDifferenceColour(
+          image.range(row, column) -
+          rendered.range(row - rendered.first_row, column - rendered.first_column));
+    }
+    picture.at<Colour>(y, x) = colour;
+  });
+  DrawOutline(rendered, window, outline, &picture);
+  return picture;
+}
+
+// A view of the place along a direction, orthographic; canvas x along right, canvas y down along
+// the negative of up.
+struct Projection {
+  Eigen::Vector3d centre;  // m, local frame
+  Eigen::Vector3d right, up;
+  double pixels_per_metre = 100.0;
+
+  cv::Point ToCanvas(const Eigen::Vector3d& p) const {
+    return {kSide / 2 + cvRound(right.dot(p - centre) * pixels_per_metre),
+            kSide / 2 - cvRound(up.dot(p - centre) * pixels_per_metre)};
+  }
+};
+
+void PutDot(const cv::Point& at, int size, const cv::Scalar& colour, cv::Mat* picture) {
+  const cv::Rect dot = cv::Rect(at, cv::Size(size, size)) & cv::Rect(0, 0, kSide, kSide);
+  if (dot.area() > 0) (*picture)(dot).setTo(colour);
+}
+
+// The measured points within radius (m) of the centre, and the models' points over them.
+cv::Mat DrawPoints(const RangeImage& image, const std::vector<CasePose>& poses,
+                   const Projection& projection, double radius) {
+  cv::Mat picture(kSide, kSide, CV_8UC3, kAreaColour);
+  constexpr double kOpacity = 0.35;
+  for (std::size_t i = poses.size(); i-- > 0;) {
+    for (const Eigen::Vector3f& point : poses[i].model->points) {
+      const cv::Point at = projection.ToCanvas(poses[i].T_local_object * point.cast<double>());
+      if (!cv::Rect(0, 0, kSide, kSide).contains(at)) continue;
+      Colour& pixel = picture.at<Colour>(at);
+      pixel = Blend(Colour(20, 19, 18), poses[i].colour, kOpacity);
+    }
+  }
+  for (int row = 0; row < image.height(); ++row) {
+    for (int column = 0; column < image.width(); ++column) {
+      if (!image.measured(row, column)) continue;
+      const Eigen::Vector3d p = image.T_local_sensor() * image.point(row, column).cast<double>();
+      if ((p - projection.centre).cwiseAbs().maxCoeff() > radius) continue;
+      PutDot(projection.ToCanvas(p), 2, kTextColour, &picture);
+    }
+  }
+  const int bar = cvRound(0.1 * projection.pixels_per_metre);  // 10 cm
+  cv::line(picture, {8, kSide - 8}, {8 + bar, kSide - 8}, kTextColour, 2);
+  DrawText(&picture, "10 cm", {12 + bar, kSide - 24}, kTextColour);
+  return picture;
+}
+
+std::vector<cv::Mat> DrawPointViews(const RangeImage& image, const std::vector<CasePose>& poses) {
+  const CasePose& first = poses.front();
+  const ObjectModel& model = *first.model;
+  const double radius = std::max(0.25, 0.5 * model.Diameter() + 0.1);  // m
+  Projection projection;
+  projection.centre = first.T_local_object * Eigen::Vector3d(0.5 * (model.box_min + model.box_max));
+  Eigen::Vector3d sight = projection.centre - image.T_local_sensor().translation();
+  sight.z() = 0.0;
+  if (sight.norm() < 1e-6) sight = Eigen::Vector3d::UnitX();
+  sight.normalize();
+  projection.pixels_per_metre = 0.5 * kSide / radius;
+  projection.right = sight.cross(Eigen::Vector3d::UnitZ());
+  projection.up = sight;
+  std::vector<cv::Mat> views = {DrawPoints(image, poses, projection, radius)};
+  projection.right = sight;
+  projection.up = Eigen::Vector3d::UnitZ();
+  views.push_back(DrawPoints(image, poses, projection, radius));
+  return views;
+}
+
+void DrawLegend(const std::vector<CasePose>& poses, int y, cv::Mat* canvas) {
+  int x = kGap;
+  const auto text = [&](const std::string& words, const cv::Scalar& colour) {
+    DrawText(canvas, words, {x, y}, colour);
+    x += TextSize(words).width;
+  };
+  for (const CasePose& pose : poses) {
+    const std::string words = pose.model->name + " " + pose.title;
+    cv::rectangle(*canvas, cv::Rect(x, y + 5, 14, 10), ToScalar(pose.colour), cv::FILLED);
+    x += 16;
+    text(words, kTextColour);
+    x += kGap;
+  }
+  x += kGap;
+  text("measured is nearer 20 cm", kTextColour);
+  constexpr int kBarWidth = 160;
+  for (int dx = 0; dx < kBarWidth; ++dx)
+    for (int dy = 0; dy < 12; ++dy)
+      canvas->at<Colour>(y + 4 + dy, x + dx) =
+          DepthDifferenceColour(kShownDifference * (2.0 * dx / kBarWidth - 1.0));
+  x += kBarWidth + 2;
+  text("20 cm farther than the model", kTextColour);
+  x += kGap;
+  cv::rectangle(*canvas, cv::Rect(x, y + 5, 14, 10), ToScalar(NoReturnColour()), cv::FILLED);
+  x += 16;
+  text("no return", kTextColour);
+}
+
+}  // namespace
+
+Colour DepthDifferenceColour(double difference) {
+  const Colour nearer(200, 70, 20);
+  const Colour equal(245, 245, 245);
+  const Colour farther(30, 30, 205);
+  const double share = std::clamp(difference / kShownDifference, -1.0, 1.0);
+  return Blend(equal, share < 0.0 ? nearer : farther, std::sqrt(std::abs(share)));
+}
+
+cv::Mat DrawCase(const RangeImage& image, const std::vector<CasePose>& poses,
+                 const std::string& title) {
+  std::vector<RenderedModel> rendered;
+  rendered.reserve(poses.size());
+  for (const CasePose& pose : poses)
+    rendered.push_back(RenderModel(
+        *pose.model, image.T_local_sensor().inverse() * pose.T_local_object, image.grid()));
+  std::vector<std::pair<std::string, cv::Mat>> pictures;
+  if (!poses.empty()) {
+    const Window window = FindWindow(rendered);
+    pictures.emplace_back("range image", DrawOutlines(image, poses, rendered, window));
+    for (std::size_t i = 0; i < std::min(kNumCompared, poses.size()); ++i)
+      pictures.emplace_back("depth, " + poses[i].title,
+                            DrawDifferences(image, rendered[i], poses[i].colour, window));
+    const std::vector<cv::Mat> views = DrawPointViews(image, poses);
+    pictures.emplace_back("points from above", views[0]);
+    pictures.emplace_back("from the side", views[1]);
+  }
+  constexpr int kNumPictures = 5;  // room for all, so that all cases are equally wide
+  cv::Mat canvas(kSide + 3 * kLineHeight + 2 * kGap, kNumPictures * (kSide + kGap) + kGap, CV_8UC3,
+                 kBackground);
+  DrawText(&canvas, title, {kGap, kGap / 2}, kTextColour);
+  int x = kGap;
+  const int y = kGap + 2 * kLineHeight;
+  for (const auto& [name, picture] : pictures) {
+    DrawText(&canvas, name, {x - 4, y - kLineHeight}, kTextColour);
+    picture.copyTo(canvas(cv::Rect(x, y, kSide, kSide)));
+    x += kSide + kGap;
+  }
+  DrawLegend(poses, y + kSide + 3, &canvas);
+  return canvas;
+}
+
+}  // namespace rimod
