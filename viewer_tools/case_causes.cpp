@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -149,6 +150,69 @@ std::string EvidenceText(const Evidence& evidence) {
       percent(kSilhouetteJump), percent(kSilhouetteContinues));
 }
 
+// What is measured along one side of a rendered model, just inside its silhouette.
+struct Rim {
+  const char* side = "";
+  int seen = 0;     // pixels that nothing is in front of
+  int through = 0;  // of them, measured farther than the model
+};
+
+// The rims of the four sides: the second rendered pixel of each row and column, for the surface's
+// discs stand over by about one.
+std::array<Rim, 4> RimsOf(const RangeImage& image, const RenderedModel& rendered) {
+  constexpr double kTolerance = 0.10;  // m
+  std::array<Rim, 4> rims = {{{"left"}, {"right"}, {"upper"}, {"lower"}}};
+  // Walks along a line of pixels into the model; at(k) gives the k-th's row and column.
+  const auto walk = [&](int length, const auto& at, Rim* rim) {
+    int depth = 0;
+    for (int k = 0; k < length && depth < 2; ++k) {
+      const auto [row, column] = at(k);
+      depth = rendered.point(row, column) < 0 ? 0 : depth + 1;
+      const int r = row + rendered.first_row;
+      const int c = column + rendered.first_column;
+      if (depth < 2 || !image.grid().Contains(r, c) || !image.measured(r, c)) continue;
+      const double behind = image.range(r, c) - rendered.range(row, column);
+      if (behind < -kTolerance) continue;
+      ++rim->seen;
+      rim->through += behind > kTolerance ? 1 : 0;
+    }
+  };
+  const int w = rendered.width;
+  const int h = rendered.height;
+  for (int row = 0; row < h; ++row) {
+    walk(
+        w, [&](int k) { return std::pair(row, k); }, &rims[0]);
+    walk(
+        w, [&](int k) { return std::pair(row, w - 1 - k); }, &rims[1]);
+  }
+  for (int column = 0; column < w; ++column) {
+    walk(
+        h, [&](int k) { return std::pair(k, column); }, &rims[2]);
+    walk(
+        h, [&](int k) { return std::pair(h - 1 - k, column); }, &rims[3]);
+  }
+  return rims;
+}
+
+// The sides of a false alarm that the laser went past, when there are two: what stands there is
+// smaller. Of the right detections on the training scans one in twenty has two such sides.
+std::string SidesSeenThrough(const CaseContext& context, const Candidate& candidate) {
+  const std::array<Rim, 4> rims =
+      RimsOf(context.image, RenderModel(context.database.models()[candidate.model],
+                                        candidate.T_sensor_object, context.image.grid()));
+  std::string sides;
+  int num_sides = 0;
+  for (const Rim& rim : rims) {
+    constexpr int kMinPixels = 5;
+    constexpr double kMuch = 0.4;
+    if (rim.seen < kMinPixels || rim.through < kMuch * rim.seen) continue;
+    sides += fmt::format("{}{} ({} of {} pixels)", sides.empty() ? "" : ", ", rim.side, rim.through,
+                         rim.seen);
+    ++num_sides;
+  }
+  return num_sides >= 2 ? sides : "";
+}
+
 Explanation ExplainClutter(const CaseContext& context, const Detection& detection) {
   const JudgedCandidate* judged = FindJudged(context, detection);
   if (judged == nullptr) return {"clutter", "not among the candidates when looked for again", {}};
@@ -162,6 +226,11 @@ Explanation ExplainClutter(const CaseContext& context, const Detection& detectio
                         object.class_name, EvidenceText(evidence)),
             {}};
   }
+  const std::string sides = SidesSeenThrough(context, judged->candidate);
+  if (!sides.empty())
+    return {"something smaller",
+            "seen through along its sides: " + sides + "; " + EvidenceText(evidence),
+            {}};
   constexpr double kFlatRelief = 0.15;  // of the matched pixels lie off one plane
   const bool flat = evidence.values[kRelief] < kFlatRelief;
   return {flat ? "clutter that is flat" : "clutter", EvidenceText(evidence), {}};

@@ -36,7 +36,8 @@ int ModelNumber(const ModelDatabase& database, const std::string& class_name);
 Explanation ExplainMiss(const CaseContext& context, int object);
 
 // Why the scan's detection is false: found twice, another class, pose too far off, a part of
-// another labelled object, clutter that is flat or not.
+// another labelled object, something smaller (two sides of the model are seen through), clutter
+// that is flat or not.
 Explanation ExplainFalseAlarm(const CaseContext& context, int detection,
                               const CountedDetection& counted);
 

@@ -10,7 +10,7 @@
 namespace rimod {
 namespace {
 
-constexpr int kSide = 270;                 // canvas pixels, of every picture in the row
+constexpr int kSide = 260;                 // canvas pixels, of every picture in the row
 constexpr int kGap = 10;                   // canvas pixels between them and round everything
 constexpr int kLineHeight = 22;            // canvas pixels, of a line of text
 constexpr std::size_t kNumCompared = 2;    // poses with a picture of depth differences
@@ -153,18 +153,31 @@ void PutDot(const cv::Point& at, int size, const cv::Scalar& colour, cv::Mat* pi
   if (dot.area() > 0) (*picture)(dot).setTo(colour);
 }
 
-// The measured points within radius (m) of the centre, and the models' points over them.
+// Where a model's points fall.
+cv::Mat_<unsigned char> MaskOf(const CasePose& pose, const Projection& projection) {
+  cv::Mat_<unsigned char> mask(kSide, kSide, static_cast<unsigned char>(0));
+  const int size =
+      std::max(2, cvRound(pose.model->point_spacing * projection.pixels_per_metre) + 1);
+  for (const Eigen::Vector3f& point : pose.model->points) {
+    const cv::Rect dot = cv::Rect(projection.ToCanvas(pose.T_local_object * point.cast<double>()),
+                                  cv::Size(size, size)) &
+                         cv::Rect(0, 0, kSide, kSide);
+    if (dot.area() > 0) mask(dot) = 1;
+  }
+  return mask;
+}
+
+// The models, and over them the measured points within radius (m) of the centre.
 cv::Mat DrawPoints(const RangeImage& image, const std::vector<CasePose>& poses,
                    const Projection& projection, double radius) {
   cv::Mat picture(kSide, kSide, CV_8UC3, kAreaColour);
   constexpr double kOpacity = 0.35;
   for (std::size_t i = poses.size(); i-- > 0;) {
-    for (const Eigen::Vector3f& point : poses[i].model->points) {
-      const cv::Point at = projection.ToCanvas(poses[i].T_local_object * point.cast<double>());
-      if (!cv::Rect(0, 0, kSide, kSide).contains(at)) continue;
-      Colour& pixel = picture.at<Colour>(at);
-      pixel = Blend(Colour(20, 19, 18), poses[i].colour, kOpacity);
-    }
+    const cv::Mat_<unsigned char> mask = MaskOf(poses[i], projection);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        if (mask(y, x) != 0)
+          picture.at<Colour>(y, x) = Blend(picture.at<Colour>(y, x), poses[i].colour, kOpacity);
   }
   for (int row = 0; row < image.height(); ++row) {
     for (int column = 0; column < image.width(); ++column) {
@@ -175,8 +188,11 @@ cv::Mat DrawPoints(const RangeImage& image, const std::vector<CasePose>& poses,
     }
   }
   const int bar = cvRound(0.1 * projection.pixels_per_metre);  // 10 cm
-  cv::line(picture, {8, kSide - 8}, {8 + bar, kSide - 8}, kTextColour, 2);
-  DrawText(&picture, "10 cm", {12 + bar, kSide - 24}, kTextColour);
+  const std::string text = "10 cm";
+  picture(cv::Rect(0, kSide - kLineHeight, bar + TextSize(text).width + 16, kLineHeight)) =
+      kBackground;
+  cv::line(picture, {8, kSide - 10}, {8 + bar, kSide - 10}, kTextColour, 2);
+  DrawText(&picture, text, {12 + bar, kSide - kLineHeight}, kTextColour);
   return picture;
 }
 
@@ -200,32 +216,35 @@ std::vector<cv::Mat> DrawPointViews(const RangeImage& image, const std::vector<C
   return views;
 }
 
+// A coloured patch and a text right of it; returns where the next one may begin.
+int DrawSwatch(const Colour& colour, const std::string& text, const cv::Point& at,
+               cv::Mat* canvas) {
+  constexpr int kPatch = 14;  // canvas pixels
+  cv::rectangle(*canvas, cv::Rect(at.x, at.y + 5, kPatch, 10), ToScalar(colour), cv::FILLED);
+  DrawText(canvas, text, {at.x + kPatch, at.y}, kTextColour);
+  return at.x + kPatch + TextSize(text).width + kGap;
+}
+
+// One line for the poses, one for the colours of depth differences.
 void DrawLegend(const std::vector<CasePose>& poses, int y, cv::Mat* canvas) {
   int x = kGap;
-  const auto text = [&](const std::string& words, const cv::Scalar& colour) {
-    DrawText(canvas, words, {x, y}, colour);
+  for (const CasePose& pose : poses)
+    x = DrawSwatch(pose.colour, pose.model->name + ": " + pose.title, {x, y}, canvas);
+  y += kLineHeight;
+  x = kGap;
+  const auto text = [&](const std::string& words) {
+    DrawText(canvas, words, {x - 4, y}, kTextColour);
     x += TextSize(words).width;
   };
-  for (const CasePose& pose : poses) {
-    const std::string words = pose.model->name + " " + pose.title;
-    cv::rectangle(*canvas, cv::Rect(x, y + 5, 14, 10), ToScalar(pose.colour), cv::FILLED);
-    x += 16;
-    text(words, kTextColour);
-    x += kGap;
-  }
-  x += kGap;
-  text("measured is nearer 20 cm", kTextColour);
+  text("measured minus model: 20 cm nearer (hidden)");
   constexpr int kBarWidth = 160;
   for (int dx = 0; dx < kBarWidth; ++dx)
     for (int dy = 0; dy < 12; ++dy)
       canvas->at<Colour>(y + 4 + dy, x + dx) =
           DepthDifferenceColour(kShownDifference * (2.0 * dx / kBarWidth - 1.0));
-  x += kBarWidth + 2;
-  text("20 cm farther than the model", kTextColour);
-  x += kGap;
-  cv::rectangle(*canvas, cv::Rect(x, y + 5, 14, 10), ToScalar(NoReturnColour()), cv::FILLED);
-  x += 16;
-  text("no return", kTextColour);
+  x += kBarWidth + 6;
+  text("20 cm farther (seen through)");
+  DrawSwatch(NoReturnColour(), "no return", {x + kGap, y}, canvas);
 }
 
 }  // namespace
@@ -257,7 +276,7 @@ cv::Mat DrawCase(const RangeImage& image, const std::vector<CasePose>& poses,
     pictures.emplace_back("from the side", views[1]);
   }
   constexpr int kNumPictures = 5;  // room for all, so that all cases are equally wide
-  cv::Mat canvas(kSide + 3 * kLineHeight + 2 * kGap, kNumPictures * (kSide + kGap) + kGap, CV_8UC3,
+  cv::Mat canvas(kSide + 4 * kLineHeight + 2 * kGap, kNumPictures * (kSide + kGap) + kGap, CV_8UC3,
                  kBackground);
   DrawText(&canvas, title, {kGap, kGap / 2}, kTextColour);
   int x = kGap;

@@ -29,10 +29,7 @@ class Finder {
     found.words.cause = explanation.cause;
     found.words.detail = explanation.detail + JudgeLabel(object, &found.score_at_label);
     AddLabel(object, &found);
-    if (!explanation.best) return;
-    const Candidate& best = *explanation.best;
-    AddPose(fmt::format("candidate, score {:.2f}", best.score), best.model,
-            context_.image.T_local_sensor() * best.T_sensor_object, kCandidateColour, &found);
+    if (explanation.best) AddCandidate(*explanation.best, object, &found);
     AddWinner(object, &found);
   }
 
@@ -100,13 +97,24 @@ class Finder {
             kLabelColour, found);
   }
 
+  // Candidates that are far from the object would only make the picture small.
+  void AddCandidate(const Candidate& candidate, const LabelledObject& object,
+                    FoundCase* found) const {
+    const ObjectShape& shape = context_.shapes.at(object.class_name);
+    const Eigen::Isometry3d pose = context_.image.T_local_sensor() * candidate.T_sensor_object;
+    if (PoseErrorBetween(pose, object.T_local_object, shape).distance > 0.5 * shape.Diameter())
+      return;
+    AddPose(fmt::format("candidate, score {:.2f}", candidate.score), candidate.model, pose,
+            kCandidateColour, found);
+  }
+
   void AddDetection(const Detection& detection, FoundCase* found) const {
     AddPose(fmt::format("detection, score {:.2f}", detection.score),
             ModelNumber(context_.database, detection.class_name), detection.T_local_object,
             kCandidateColour, found);
   }
 
-  // The detection that stands where the object is, if another candidate has been drawn.
+  // The detection that stands where the object is.
   void AddWinner(const LabelledObject& object, FoundCase* found) const {
     const ObjectShape& shape = context_.shapes.at(object.class_name);
     const Eigen::Vector3d centre = object.T_local_object * shape.Centre();
