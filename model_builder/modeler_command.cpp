@@ -18,6 +18,7 @@
 #include "io/progress_bar.h"
 #include "io/recording.h"
 #include "io/thread_pool.h"
+#include "model_builder/inspect_command.h"
 #include "model_builder/live_recording.h"
 #include "rimod/model_building.h"
 
@@ -157,6 +158,7 @@ bool Publish(const ObjectModel& model, const ModelerOptions& options, const std:
 }  // namespace
 
 int RunModeler(const ModelerOptions& given, const Configuration& configuration) {
+  if (!given.inspect.empty()) return RunInspect(given.inspect, given.output, configuration);
   ModelerOptions options = given;
   if (!options.live.empty()) {
     const int exit_code =

@@ -9,7 +9,9 @@ namespace rimod {
 
 // What rimod-modeler was asked to do.
 struct ModelerOptions {
-  std::string recording;   // folder; one of these four is given
+  std::string inspect;     // model file of which a picture is wanted; one of these five is given
+  std::string output;      // that picture
+  std::string recording;   // folder
   std::string live;        // folder with model.json only: scans come on the bus
   std::string cloud;       // point cloud file
   std::string mesh;        // mesh file
@@ -21,9 +23,9 @@ struct ModelerOptions {
   BusOptions bus;
 };
 
-// Builds a model and writes it; prints a summary on stdout, messages go to the log. Returns the
-// exit code: 0 done, 1 the input could not be read or used, or the output not written or sent, 2
-// bad usage (no usable class name).
+// Builds a model and writes it, or draws one; prints a summary on stdout, messages go to the log.
+// Returns the exit code: 0 done, 1 the input could not be read or used, or the output not written
+// or sent, 2 bad usage (no usable class name).
 int RunModeler(const ModelerOptions& options, const Configuration& configuration);
 
 }  // namespace rimod

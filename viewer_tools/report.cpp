@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 
 #include "io/files.h"
@@ -20,18 +19,13 @@
 #include "viewer_tools/html.h"
 #include "viewer_tools/label_file.h"
 #include "viewer_tools/pictures.h"
+#include "viewer_tools/png.h"
 #include "viewer_tools/report_cases.h"
 #include "viewer_tools/report_page.h"
 #include "viewer_tools/report_sources.h"
 
 namespace rimod {
 namespace {
-
-std::string EncodePng(const cv::Mat& picture) {
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9})) return "";
-  return {bytes.begin(), bytes.end()};
-}
 
 // What stands in the files that belong to the scans, by scan.
 struct Inputs {
@@ -297,9 +291,11 @@ class Reporter {
   }
 
   static void PrintTotals(const HitCount& count) {
-    std::printf("%d objects: %d right, %d missed, %d false alarms; recall %.3f, precision %.3f\n",
-                count.num_counted_objects, count.total.right, count.total.missed,
-                count.total.false_alarms, count.total.Recall(), count.total.Precision());
+    std::printf(
+        "%d objects: %d right (%d in pose), %d missed, %d false alarms; recall %.3f, precision "
+        "%.3f\n",
+        count.num_counted_objects, count.total.right, count.num_posed, count.total.missed,
+        count.total.false_alarms, count.total.Recall(), count.total.Precision());
   }
 
   const ReportOptions& options_;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <system_error>
 
@@ -16,6 +15,7 @@
 #include "rimod/detector.h"
 #include "viewer_tools/detection_lines.h"
 #include "viewer_tools/pictures.h"
+#include "viewer_tools/png.h"
 #include "viewer_tools/recorded_scans.h"
 
 namespace rimod {
@@ -64,13 +64,9 @@ class Painter {
 
   void Write(const std::string& name, const cv::Mat& picture) {
     const std::string path = (std::filesystem::path(options_.output) / (name + ".png")).string();
-    std::vector<unsigned char> bytes;
-    std::string error;
-    if (cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-      error = WriteFileAtomically(path, std::string(bytes.begin(), bytes.end()));
-    } else {
-      error = path + ": the picture cannot be encoded";
-    }
+    const std::string bytes = EncodePng(picture);
+    const std::string error =
+        bytes.empty() ? path + ": the picture cannot be encoded" : WriteFileAtomically(path, bytes);
     if (!error.empty()) {
       spdlog::error("{}", error);
       failed_ = true;
