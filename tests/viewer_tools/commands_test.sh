@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command lines of rimod-show and rimod-snapshot: exit codes, clear words, nothing on stdout but
+# The command lines of rimod-show, rimod-snapshot and rimod-report: exit codes, clear words, nothing on stdout but
 # results.
 #   commands_test.sh BIN LOG
 set -u
@@ -59,6 +59,47 @@ check "snapshot: missing scan" 1 "$work/y.pcd" "$snapshot" --models "$work/none"
   --output "$work/out" --scan "$work/y.pcd" --detections "$work/nothing.jsonl"
 check "snapshot: output is a file" 1 "x.pcd" "$snapshot" --models "$work/none" \
   --output "$work/x.pcd" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
+
+report=$bin/rimod-report
+mkdir "$work/recordings"
+echo '{"scans": [{"scan": "x", "objects": [{"class": "fan", "pose": [1, 0, 0, 1, 0, 0, 0]}]}]}' >"$work/labels.json"
+echo '[{"scan": "x", "ms": {"matching": -1}}]' >"$work/times.json"
+check "report: no source" 2 "source" "$report" --models "$work/none" --output "$work/r.html"
+check "report: no output" 2 "output" "$report" --models "$work/none" "$work/x.pcd"
+check "report: missing models" 1 "$work/missing" "$report" --models "$work/missing" \
+  --output "$work/r.html" "$work/x.pcd"
+check "report: broken model" 1 "broken.rimod" "$report" --models "$work/models" \
+  --output "$work/r.html" "$work/x.pcd"
+check "report: missing scan" 1 "$work/y.pcd" "$report" --models "$work/none" \
+  --output "$work/r.html" "$work/y.pcd"
+check "report: truncated log" 1 "truncated.lcm" "$report" --models "$work/none" \
+  --output "$work/r.html" "$work/truncated.lcm"
+check "report: no log at all" 1 "zeros.lcm" "$report" --models "$work/none" \
+  --output "$work/r.html" "$work/zeros.lcm"
+check "report: missing labels" 1 "$work/no.json" "$report" --models "$work/none" \
+  --labels "$work/no.json" --output "$work/r.html" "$work/x.pcd"
+check "report: labels that are none" 1 "bad.jsonl" "$report" --models "$work/none" \
+  --labels "$work/bad.jsonl" --output "$work/r.html" "$work/x.pcd"
+check "report: label without a model" 1 "no model of class fan" "$report" --models "$work/none" \
+  --labels "$work/labels.json" --output "$work/r.html" "$work/x.pcd"
+check "report: bad detections" 1 "bad.jsonl: line 1" "$report" --models "$work/none" \
+  --detections "$work/bad.jsonl" --output "$work/r.html" "$work/x.pcd"
+check "report: bad times" 1 "times.json" "$report" --models "$work/none" \
+  --timing "$work/times.json" --output "$work/r.html" "$work/x.pcd"
+check "report: output is a folder" 1 "recordings" "$report" --models "$work/none" \
+  --output "$work/recordings" "$work/x.pcd"
+check "report: cases are a file" 1 "x.pcd" "$report" --models "$work/none" \
+  --cases "$work/x.pcd" --output "$work/r.html" "$work/x.pcd"
+check "report: a scan without anything known" 0 "" "$report" --models "$work/none" \
+  --output "$work/r.html" "$work/x.pcd"
+grep -q "</html>" "$work/r.html" || { echo "FAILED: no whole page"; failures=$((failures + 1)); }
+
+check "modeler: nothing to do" 2 "" "$bin/rimod-modeler"
+check "modeler: nowhere to write" 2 "--out is required" "$bin/rimod-modeler" --mesh "$work/x.obj"
+check "modeler: inspected without output" 2 "--output is required" "$bin/rimod-modeler" \
+  --inspect "$work/models/broken.rimod"
+check "modeler: broken model inspected" 1 "broken.rimod" "$bin/rimod-modeler" \
+  --inspect "$work/models/broken.rimod" --output "$work/sheet.png"
 
 check "snapshot: a scan in which nothing was found" 0 "" "$snapshot" --models "$work/none" \
   --output "$work/out/new" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
