@@ -129,15 +129,16 @@ class Finder {
     }
   }
 
+  // The labelled object nearest to a detection, if they may touch.
   const LabelledObject* NearestObject(const Detection& detection) const {
     const LabelledObject* nearest = nullptr;
-    double least = 1.0;  // m, farther ones have nothing to do with it
-    const Eigen::Vector3d centre =
-        detection.T_local_object * context_.shapes.at(detection.class_name).Centre();
+    double least = std::numeric_limits<double>::infinity();
+    const ObjectShape& own = context_.shapes.at(detection.class_name);
+    const Eigen::Vector3d centre = detection.T_local_object * own.Centre();
     for (const LabelledObject& object : context_.scan.objects) {
       const ObjectShape& shape = context_.shapes.at(object.class_name);
       const double distance = (object.T_local_object * shape.Centre() - centre).norm();
-      if (!(distance < least)) continue;
+      if (!(distance < least) || distance > 0.5 * (own.Diameter() + shape.Diameter())) continue;
       least = distance;
       nearest = &object;
     }

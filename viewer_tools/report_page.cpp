@@ -143,9 +143,9 @@ std::string Cases(const Report& report, CaseKind kind) {
     if (c.kind != kind) continue;
     html += fmt::format(
         "<article><h3>{} <span class=\"scan\">scan {}</span> <span class=\"cause\">{}</span></h3>"
-        "<p>{}. {}.</p>\n",
-        EscapeHtml(c.class_name), EscapeHtml(c.scan), EscapeHtml(c.cause), EscapeHtml(c.facts),
-        EscapeHtml(c.detail));
+        "<p>{}.</p>\n",
+        EscapeHtml(c.class_name), EscapeHtml(c.scan), EscapeHtml(c.cause),
+        EscapeHtml(c.detail.empty() ? c.facts : c.facts + ": " + c.detail));
     if (!c.picture.empty())
       html +=
           fmt::format("<img loading=\"lazy\" alt=\"{} in scan {}: {}\" src=\"{}\">\n",

@@ -78,7 +78,8 @@ std::string ColumnsSvg(const std::vector<ScanTimes>& scans) {
   double max_ms = 0.0;
   for (const ScanTimes& scan : scans) max_ms = std::max(max_ms, SumOf(scan));
   if (!(max_ms > 0.0) || !std::isfinite(max_ms)) return "";
-  const double pitch = kWidth / static_cast<double>(scans.size());
+  constexpr double kMaxPitch = 90.0;
+  const double pitch = std::min(kWidth / static_cast<double>(scans.size()), kMaxPitch);
   std::string svg = fmt::format(
       "<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"stage times of every "
       "scan\">\n",
@@ -94,7 +95,7 @@ std::string ColumnsSvg(const std::vector<ScanTimes>& scans) {
       y -= height;
       svg += fmt::format(
           "<rect class=\"s{}\" x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"/>", k,
-          x, y, std::min(0.85 * pitch, 80.0), height);
+          x, y, 0.85 * pitch, height);
     }
     svg += "</g>\n";
   }

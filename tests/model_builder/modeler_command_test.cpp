@@ -137,6 +137,24 @@ TEST_F(ModelerCommandTest, UnusableInputLeavesTheOldModel) {
   EXPECT_EQ(files_.Read("out.rimod"), "old");
 }
 
+TEST_F(ModelerCommandTest, AModelIsDrawn) {
+  WriteRecording();
+  ASSERT_EQ(Run([&](ModelerOptions* o) { o->recording = files_.path(); }), 0);
+  const std::string before = files_.Read("out.rimod");
+  const auto inspect = [&](const std::string& model, const std::string& picture) {
+    return Run([&](ModelerOptions* o) {
+      o->inspect = files_.PathOf(model);
+      o->output = files_.PathOf(picture);
+    });
+  };
+  EXPECT_EQ(inspect("out.rimod", "sheet.png"), 0);
+  EXPECT_EQ(files_.Read("sheet.png").substr(1, 3), "PNG");
+  EXPECT_EQ(files_.Read("out.rimod"), before);
+  EXPECT_EQ(inspect("missing.rimod", "other.png"), 1);
+  EXPECT_EQ(files_.Read("other.png"), "");
+  EXPECT_EQ(inspect("out.rimod", "no/sheet.png"), 1);
+}
+
 TEST_F(ModelerCommandTest, AModelThatCannotBeWrittenIsTold) {
   WriteCloud("cloud.pcd");
   EXPECT_EQ(Run([&](ModelerOptions* o) {
