@@ -66,8 +66,9 @@ TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObje
 
 // The image's points from above, low ones dark and high ones light, without those above 2 m over
 // the floor (ceilings), with the objects' surface, footprint and heading (a line along x), names
-// and scores, a metre grid of the local frame and the sensor.
-cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& objects,
+// and scores, a metre grid of the local frame and the sensor. Objects more than 1 km away are left
+// out.
+cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& all_objects,
                     const std::string& title);
 
 }  // namespace rimod

@@ -1,28 +1,26 @@
 #include "viewer_tools/report.h"
 
-#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "io/files.h"
 #include "io/model_file.h"
 #include "io/thread_pool.h"
 #include "io/version.h"
 #include "rimod/detector.h"
+#include "viewer_tools/case_folder.h"
 #include "viewer_tools/detection_lines.h"
 #include "viewer_tools/html.h"
 #include "viewer_tools/label_file.h"
-#include "viewer_tools/pictures.h"
 #include "viewer_tools/png.h"
 #include "viewer_tools/report_cases.h"
 #include "viewer_tools/report_page.h"
 #include "viewer_tools/report_sources.h"
+#include "viewer_tools/scan_pictures.h"
 
 namespace rimod {
 namespace {
@@ -52,21 +50,33 @@ class Reporter {
     all_well_ = false;
   }
 
+  void TellIf(const std::string& error) {
+    if (!error.empty()) Tell(error);
+  }
+
+  // False when there is no place to write to.
+  bool MakeCaseFolder() {
+    if (options_.cases.empty()) return true;
+    const std::string error = case_folder_.emplace(options_.cases).Make();
+    TellIf(error);
+    return error.empty();
+  }
+
   void ReadInputs() {
     if (!options_.labels.empty()) {
       LabelFile labels = ReadLabelFile(options_.labels);
-      if (!labels.error.empty()) Tell(labels.error);
+      TellIf(labels.error);
       for (LabelledScan& scan : labels.scans) AddLabels(std::move(scan));
     }
     if (!options_.detections.empty()) {
       const DetectionLines lines = ReadDetectionLines(options_.detections);
-      if (!lines.error.empty()) Tell(lines.error);
+      TellIf(lines.error);
       for (const DetectionLine& line : lines.lines)
         inputs_.detections[line.scan].push_back(line.detection);
     }
     if (options_.timing.empty()) return;
     TimingFile timing = ReadTimingFile(options_.timing);
-    if (!timing.error.empty()) Tell(timing.error);
+    TellIf(timing.error);
     inputs_.times = std::move(timing.times);
   }
 
@@ -100,10 +110,10 @@ class Reporter {
                      {"labels", options_.labels.empty() ? "none" : options_.labels},
                      {"rimod", Version()}};
     if (!options_.labels.empty()) report_.count = CountHits(counted_, shapes_, options_.hits);
-    if (!options_.cases.empty())
-      Save((std::filesystem::path(options_.cases) / "cases.jsonl").string(), case_lines_);
-    if (Save(options_.output, MakeReportPage(report_)))
-      std::printf("%s\n", options_.output.c_str());
+    if (case_folder_) TellIf(case_folder_->WriteList());
+    const std::string error = WriteFileAtomically(options_.output, MakeReportPage(report_));
+    TellIf(error);
+    if (error.empty()) std::printf("%s\n", options_.output.c_str());
     if (report_.count) PrintTotals(*report_.count);
     return all_well_;
   }
@@ -197,80 +207,28 @@ class Reporter {
       Tell(options_.labels + ": has no scan " + source.name);
     }
     if (static_cast<int>(report_.scans.size()) <= options_.max_pictures)
-      AddPictures(source.image, counted, count, &scan);
+      scan.pictures = DrawScan(source.name, source.image, counted, count, database_.models());
     if (count) counted_.push_back(std::move(counted));
     spdlog::info("{}: {} detections", source.name, scan.detections.size());
-  }
-
-  void AddPictures(const RangeImage& image, const CountedScan& counted,
-                   const std::optional<HitCount>& count, ReportScan* scan) {
-    std::vector<DrawnObject> objects = MakeDrawnObjects(counted.detections, database_.models());
-    if (count) {
-      for (std::size_t i = 0; i < objects.size(); ++i) {
-        const Verdict verdict = count->detections[0][i].verdict;
-        if (verdict != Verdict::kRight)
-          objects[i].label += std::string(", ") + VerdictText(verdict);
-      }
-      AddMissed(counted, *count, &objects);
-    }
-    scan->pictures.emplace_back(
-        "range image", DataUri("image/png", EncodePng(DrawRangeImage(
-                                                image, objects, scan->name + ": range image"))));
-    scan->pictures.emplace_back(
-        "seen from above",
-        DataUri("image/png", EncodePng(DrawTopView(image, objects, scan->name + ": from above"))));
-  }
-
-  // Missed objects are drawn at their labels, in a colour of their own.
-  void AddMissed(const CountedScan& counted, const HitCount& count,
-                 std::vector<DrawnObject>* objects) const {
-    for (std::size_t i = 0; i < counted.objects.size(); ++i) {
-      if (!count.objects[0][i].counts || count.objects[0][i].found()) continue;
-      const LabelledObject& object = counted.objects[i];
-      const ObjectShape& shape = shapes_.at(object.class_name);
-      Detection detection{object.class_name, object.T_local_object, shape.box_min, shape.box_max,
-                          0.0};
-      DrawnObject missed = MakeDrawnObjects({detection}, database_.models()).front();
-      missed.colour = Colour(245, 245, 245);
-      missed.label = object.class_name + ", missed";
-      objects->push_back(missed);
-    }
   }
 
   void AddCases(const SourceScan& source, const CountedScan& counted, const HitCount& count) {
     for (FoundCase& found : FindCases(source.name, source.image, counted, count, database_, shapes_,
                                       options_.params, execution_)) {
-      const std::string title = found.words.class_name + " in scan " + found.words.scan + ", " +
-                                CaseKindText(found.words.kind) + ": " + found.words.cause + ". " +
-                                found.words.facts;
-      const std::string png = EncodePng(DrawCase(source.image, found.poses, title));
-      found.words.picture = DataUri("image/png", png);
-      if (!options_.cases.empty()) SaveCase(found, png);
+      const int number = static_cast<int>(report_.cases.size());
+      std::string png;
+      if (number < options_.max_cases) {
+        png = EncodePng(DrawCase(source.image, found.poses, TitleOf(found.words)));
+        found.words.picture = DataUri("image/png", png);
+      }
+      if (case_folder_) TellIf(case_folder_->Add(number, found, png));
       report_.cases.push_back(std::move(found.words));
     }
   }
 
-  void SaveCase(const FoundCase& found, const std::string& png) {
-    std::string name =
-        fmt::format("{:03}-{}-{}-{}", report_.cases.size(), CaseKindText(found.words.kind),
-                    found.words.class_name, found.words.scan);
-    for (char& c : name)
-      if (c == ' ' || c == '/' || c == '#') c = '_';
-    Save((std::filesystem::path(options_.cases) / (name + ".png")).string(), png);
-    nlohmann::ordered_json line = {{"picture", name + ".png"},
-                                   {"kind", CaseKindText(found.words.kind)},
-                                   {"scan", found.words.scan},
-                                   {"class", found.words.class_name},
-                                   {"cause", found.words.cause}};
-    if (found.object) {
-      line["visible"] = found.object->visible;
-      line["points"] = found.object->num_points;
-      line["distance"] = found.object->distance;
-    }
-    if (found.score) line["score"] = *found.score;
-    if (found.score_at_label) line["score_at_label"] = *found.score_at_label;
-    line["detail"] = found.words.detail;
-    case_lines_ += line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  static std::string TitleOf(const ReportCase& words) {
+    return words.class_name + " in scan " + words.scan + ", " + CaseKindText(words.kind) + ": " +
+           words.cause + ". " + words.facts;
   }
 
   // Labels and detections of scans that no source has.
@@ -282,12 +240,6 @@ class Reporter {
     if (!inputs_.detections.empty())
       Tell(options_.detections + ": has detections in scans that are not among the sources, as " +
            inputs_.detections.begin()->first);
-  }
-
-  bool Save(const std::string& path, const std::string& bytes) {
-    const std::string error = WriteFileAtomically(path, bytes);
-    if (!error.empty()) Tell(error);
-    return error.empty();
   }
 
   static void PrintTotals(const HitCount& count) {
@@ -307,7 +259,7 @@ class Reporter {
   Report report_;
   std::vector<CountedScan> counted_;
   std::string detections_origin_ = "none";
-  std::string case_lines_;
+  std::optional<CaseFolder> case_folder_;
   bool all_well_ = true;
 };
 
@@ -319,16 +271,9 @@ int RunReport(const ReportOptions& options) {
     spdlog::error("{}", folder.error);
     return 1;
   }
-  if (!options.cases.empty()) {
-    std::error_code cause;
-    std::filesystem::create_directories(options.cases, cause);
-    if (cause) {
-      spdlog::error("{}: the folder cannot be made: {}", options.cases, cause.message());
-      return 1;
-    }
-  }
   Reporter reporter(options, std::move(folder.models));
   for (const std::string& error : folder.bad_files) reporter.Tell(error);
+  if (!reporter.MakeCaseFolder()) return 1;
   reporter.ReadInputs();
   for (const std::string& path : options.sources) reporter.AddSource(path);
   return reporter.Finish() ? 0 : 1;

@@ -21,6 +21,7 @@ struct ReportOptions {
   std::string output;      // the HTML file
   std::string cases;       // folder for a picture of each case and a list of them; empty: none
   int max_pictures = 200;  // scans with pictures; further ones stand in the tables only; >= 0
+  int max_cases = 1000;    // with pictures, likewise; >= 0
   int num_threads = 0;     // 0: as many as the machine has
   HitParams hits;
   Channels channels;

@@ -68,6 +68,10 @@ std::unique_ptr<CLI::App> MakeReportApp(ReportCommandLine* command_line) {
       ->capture_default_str()
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
+  app->add_option("--max-cases", options.max_cases, "Cases that get pictures, likewise")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000000))
+      ->type_name("N");
   app->add_option("--channel", command_line->bus.renamings,
                   "The log has another name for a channel: NAME=OTHER")
       ->allow_extra_args(false)

@@ -55,6 +55,22 @@ struct Extent {
   }
 };
 
+// Whether an object is near enough to be drawn: detections of a file may be anywhere.
+bool IsNear(const RangeImage& image, const DrawnObject& object) {
+  constexpr double kFarthest = 1000.0;  // m from the sensor
+  const Eigen::Vector3d offset =
+      object.detection.T_local_object.translation() - image.T_local_sensor().translation();
+  return offset.cwiseAbs().maxCoeff() < kFarthest;
+}
+
+std::vector<DrawnObject> NearObjects(const RangeImage& image,
+                                     const std::vector<DrawnObject>& objects) {
+  std::vector<DrawnObject> near;
+  for (const DrawnObject& object : objects)
+    if (IsNear(image, object)) near.push_back(object);
+  return near;
+}
+
 Extent FindExtent(const RangeImage& image, const std::vector<DrawnObject>& objects) {
   constexpr double kNearShare = 0.9;  // the view out of windows must not make the room small
   Extent extent;
@@ -69,7 +85,7 @@ Extent FindExtent(const RangeImage& image, const std::vector<DrawnObject>& objec
     for (std::size_t i = 0; i < points.size(); ++i)
       if (distances[i] <= shown_distance) extent.Add(points[i].head<2>());
   }
-  for (const DrawnObject& object : objects)
+  for (const DrawnObject& object : NearObjects(image, objects))
     for (const Eigen::Vector3d& corner : BoxCorners(object.detection)) extent.Add(corner.head<2>());
   return extent;
 }
@@ -187,8 +203,9 @@ TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObje
   return layout;
 }
 
-cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& objects,
+cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& all_objects,
                     const std::string& title) {
+  const std::vector<DrawnObject> objects = NearObjects(image, all_objects);
   const TopViewLayout layout = LayOutTopView(image, objects);
   cv::Mat canvas(layout.canvas, CV_8UC3, kBackground);
   canvas(layout.area).setTo(kAreaColour);

@@ -45,6 +45,16 @@ report invented --detections "$work/box.jsonl"
 grep -q '1 false alarms' "$work/invented.out" || fail "$(cat "$work/invented.out")"
 ls "$work"/invented/*false_alarm-box-office.png >/dev/null 2>&1 || fail "no picture of the false alarm"
 
+# Poses at the end of the world and many of them are drawn or not, but end well.
+for pose in 1e300,-1e300,1e300 1e9,0,0 0,0,0; do
+  echo '{"scan":"office","class":"box","pose":['$pose',1,0,0,0],"score":0.9}'
+done >"$work/far.jsonl"
+for _ in $(seq 50); do head -n 1 "$work/box.jsonl"; done >>"$work/far.jsonl"
+report far --detections "$work/far.jsonl" --max-cases 5
+grep -q '53 false alarms' "$work/far.out" || fail "$(cat "$work/far.out")"
+[ "$(find "$work/far" -name '*.png' | wc -l)" -eq 5 ] || fail "not five pictures"
+[ "$(wc -l <"$work/far/cases.jsonl")" -eq 57 ] || fail "not a line a case"
+
 # The same input gives the same page.
 report again --detections "$work/box.jsonl" --threads 1
 diff "$work/again/cases.jsonl" "$work/invented/cases.jsonl" ||
