@@ -193,5 +193,16 @@ TEST(TopViewPictureTest, CeilingsAreLeftOut) {
   EXPECT_EQ(cv::norm(before, after), 0.0);
 }
 
+TEST(TopViewTest, ObjectsAtTheEndOfTheWorldAreLeftOut) {
+  const std::vector<ObjectModel> models = {MakePlate()};
+  const std::vector<DrawnObject> near = MakeDrawnObjects({PlateAt(2.0, 0.0, 0.0)}, models);
+  const std::vector<DrawnObject> both =
+      MakeDrawnObjects({PlateAt(2.0, 0.0, 0.0), PlateAt(1e300, -1e300, 0.0)}, models);
+  const cv::Mat without = DrawTopView(MakeWall(), near, "title");
+  const cv::Mat with = DrawTopView(MakeWall(), both, "title");
+  ASSERT_EQ(without.size(), with.size());
+  EXPECT_EQ(cv::norm(without, with), 0.0);
+}
+
 }  // namespace
 }  // namespace rimod
