@@ -36,6 +36,9 @@ std::string Number(double value) {
   return std::isinf(value) ? "&infin;" : fmt::format("{:.3f}", value);
 }
 
+// A share of so many; a dash where there are none.
+std::string Share(double share, int of) { return of > 0 ? Number(share) : "&ndash;"; }
+
 std::string Count(int value) {
   return value == 0 ? "<span class=\"zero\">0</span>" : std::to_string(value);
 }
@@ -57,10 +60,13 @@ std::string Summary(const Report& report) {
                  "objects found");
     html += Card(std::to_string(count.total.missed), "missed");
     html += Card(std::to_string(count.total.false_alarms), "false alarms");
-    html += Card(Number(count.total.Recall()), "recall");
-    html += Card(Number(count.total.Precision()), "precision");
-    const double objects = std::max(1, count.num_counted_objects);
-    html += Card(Number(count.num_posed / objects), "pose recall (10 cm, 15 degrees)");
+    const Totals& total = count.total;
+    const int num_objects = count.num_counted_objects;
+    html += Card(Share(total.Recall(), num_objects), "recall");
+    html += Card(Share(total.Precision(), total.right + total.false_alarms), "precision");
+    html +=
+        Card(Share(static_cast<double>(count.num_posed) / std::max(1, num_objects), num_objects),
+             "pose recall (10 cm, 15 degrees)");
     html += Card(Number(count.total.Zeta()), "zeta");
   }
   html += "</div>\n";
@@ -101,7 +107,8 @@ std::string ClassTable(const HitCount& count) {
       Row({"class", "right", "false", "missed", "recall", "precision", "zeta"}, true)};
   const auto add = [&](const std::string& name, const Totals& t) {
     rows.push_back(Row({EscapeHtml(name), Count(t.right), Count(t.false_alarms), Count(t.missed),
-                        Number(t.Recall()), Number(t.Precision()), Number(t.Zeta())}));
+                        Share(t.Recall(), t.right + t.missed),
+                        Share(t.Precision(), t.right + t.false_alarms), Number(t.Zeta())}));
   };
   for (const std::string& name : count.classes) {
     const auto totals = count.per_class.find(name);

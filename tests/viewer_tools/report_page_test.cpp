@@ -84,6 +84,12 @@ TEST(ReportPageTest, ElementsAreClosed) {
         << tag;
 }
 
+TEST(ReportPageTest, SharesOfNothingAreDashes) {
+  const std::string page = MakeReportPage(MakeReport());  // one detection, no object
+  EXPECT_NE(page.find("<b>&ndash;</b><span>recall</span>"), std::string::npos);
+  EXPECT_NE(page.find("<b>0.000</b><span>precision</span>"), std::string::npos);
+}
+
 TEST(ReportPageTest, WithoutLabelsNothingIsSaidOfMisses) {
   Report report = MakeReport();
   report.count.reset();
