@@ -2,11 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cstdint>
 #include <vector>
 
-#include "rimod/object_model.h"
-#include "rimod/refinement.h"
+#include "rimod/judged_model.h"
 #include "rimod/scene.h"
 
 namespace rimod {
@@ -70,29 +68,6 @@ enum EvidenceIndex {
 struct Evidence {
   std::array<double, kEvidenceCount> values{};
   std::vector<int> explained;  // pixels of the scene that the object explains, rising
-};
-
-// A model's surface for judging poses: thinned, and which space it fills.
-class JudgedModel {
- public:
-  explicit JudgedModel(const ObjectModel& model);
-
-  const ObjectModel& model() const { return *model_; }
-  // About evenly thinned to the spacing (m), for refinement.
-  const SurfaceSample& sample() const { return sample_; }
-  // Model whose points are thinned so far that their discs still close the surface for pixels of
-  // this size (m).
-  const ObjectModel& Thinned(double pixel_size) const;
-  // Whether a point (object frame) lies on the surface, to about 3 cm; outside the box: false.
-  bool OnSurface(const Eigen::Vector3f& p_object) const;
-
- private:
-  const ObjectModel* model_;
-  SurfaceSample sample_;
-  std::vector<ObjectModel> thinned_;  // by rising spacing; the first is the model itself
-  Eigen::Vector3f grid_origin_;
-  Eigen::Vector3i grid_size_;
-  std::vector<bool> near_surface_;  // by cell: bits, for models are many
 };
 
 // Evidence for a pose. No pixel rendered: all zero, nothing explained.

@@ -5,10 +5,10 @@
 
 #include "rimod/descriptor_index.h"
 #include "rimod/descriptor_projection.h"
-#include "rimod/evidence.h"
 #include "rimod/execution.h"
 #include "rimod/false_positive_rejection.h"
 #include "rimod/hypothesis_ranking.h"
+#include "rimod/judged_model.h"
 #include "rimod/object_model.h"
 #include "rimod/params.h"
 
