@@ -12,6 +12,7 @@
 #include "io/partial_messages.h"
 #include "io/range_image_messages.h"
 #include "io/stage_timer.h"
+#include "io/status_counters.h"
 #include "io/stoppable.h"
 #include "rimod/detector.h"
 
@@ -182,6 +183,8 @@ void ExtractorProcess::OnIdle() {
   status_.SetCounter("partial scans overtaken", num_partial_overtaken_);
   if (takes_clouds_) ReportClouds();
   status_.SetCounter("unsent messages", publisher_.num_failed());
+  status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_.num_waiting()));
+  status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
   status_.PublishIfDue();
 }
 

@@ -14,6 +14,7 @@
 #include "io/model_messages.h"
 #include "io/range_image_messages.h"
 #include "io/stage_timer.h"
+#include "io/status_counters.h"
 #include "io/stoppable.h"
 
 namespace rimod {
@@ -308,6 +309,8 @@ void MatcherProcess::OnIdle() {
   status_.SetCounter("early looks", num_early_looks_);
   status_.SetCounter("early looks overtaken", num_early_overtaken_);
   status_.SetCounter("unsent messages", publisher_.num_failed());
+  status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_->num_waiting()));
+  status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
   status_.PublishIfDue();
 }
 

@@ -68,6 +68,12 @@ class NewestWorker {
   // Set while an item of the first rank waits: work on one of the second should end then.
   const std::atomic<bool>& wanted() const { return wanted_; }
 
+  // Items that wait; the one at hand is not among them.
+  std::size_t num_waiting() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return waiting_.size();
+  }
+
   // Has prepare called, also when there is no item.
   void Poke() {
     {
@@ -108,7 +114,7 @@ class NewestWorker {
   const std::size_t max_waiting_;
   const std::function<void()> prepare_;
   const std::function<void(Item)> work_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Item> waiting_;
   std::optional<Item> idle_item_;

@@ -55,6 +55,11 @@ std::int64_t PacedPublisher::num_failed() const {
   return num_failed_;
 }
 
+std::int64_t PacedPublisher::num_waiting() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return static_cast<std::int64_t>(queue_.size());
+}
+
 void PacedPublisher::Send() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {

@@ -42,6 +42,8 @@ class PacedPublisher {
   void Flush();
   // Messages that LCM refused to send.
   std::int64_t num_failed() const;
+  // Messages that wait for their turn.
+  std::int64_t num_waiting() const;
 
  private:
   struct Item {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "io/message_codec.h"
+#include "io/process_usage.h"
+#include "io/status_counters.h"
 #include "io/version.h"
 
 namespace rimod {
@@ -47,6 +49,13 @@ std::string Trimmed(const std::string& text) {
   return trimmed;
 }
 
+void AddCounter(const std::string& name, std::int64_t value, status_t* status) {
+  counter_t counter;
+  counter.name = name;
+  counter.value = value;
+  status->counters.push_back(std::move(counter));
+}
+
 }  // namespace
 
 StatusReporter::StatusReporter(lcm::LCM* lcm, std::string channel, std::string process)
@@ -71,29 +80,36 @@ void StatusReporter::CountDropped(const std::string& cause, std::int64_t number)
   const std::lock_guard<std::mutex> lock(mutex_);
   if (number == 0) return;
   totals_.num_dropped += number;
-  Counter(cause) += number;
+  Counter(kDroppedPrefix + cause) += number;
 }
 
 void StatusReporter::CountRejected(const std::string& channel, const std::string& cause) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++totals_.num_rejected;
   const std::string kind = channel + ": " + cause;
-  ++Counter("rejected " + kind);
+  ++Counter(kRejectedPrefix + kind);
   LogOnce(kind, "message on " + channel + " rejected: " + cause);
 }
 
 void StatusReporter::SetCounter(const std::string& name, std::int64_t value,
                                 bool counts_as_dropped) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::int64_t growth = Raise(name, value);
+  const std::int64_t growth = Raise((counts_as_dropped ? kDroppedPrefix : "") + name, value);
   if (counts_as_dropped) totals_.num_dropped += growth;
+}
+
+void StatusReporter::SetGauge(const std::string& name, std::int64_t value) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Counter(name) = value;
 }
 
 void StatusReporter::SetSectionCounters(const std::string& name, const SectionCounters& counters) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  totals_.num_dropped += Raise(name + " incomplete", counters.incomplete);
-  totals_.num_dropped += Raise(name + " conflicting", counters.conflicting);
-  totals_.num_rejected += Raise(name + " sections with bad numbers", counters.bad_numbers);
+  const std::string dropped = kDroppedPrefix + name;
+  totals_.num_dropped += Raise(dropped + " incomplete", counters.incomplete);
+  totals_.num_dropped += Raise(dropped + " conflicting", counters.conflicting);
+  totals_.num_rejected +=
+      Raise(kRejectedPrefix + name + ": sections with bad numbers", counters.bad_numbers);
   Raise(name + " sections duplicated", counters.duplicated);
   Raise(name + " sections late", counters.late);
 }
@@ -142,15 +158,14 @@ void StatusReporter::Publish() {
 }
 
 status_t StatusReporter::Snapshot() const {
+  const ProcessUsage usage = CurrentProcessUsage();
   const std::lock_guard<std::mutex> lock(mutex_);
   status_t status = totals_;
   status.utime = WallClockUtime();
-  for (const auto& [name, value] : counters_) {
-    counter_t counter;
-    counter.name = name;
-    counter.value = value;
-    status.counters.push_back(std::move(counter));
-  }
+  for (const auto& [name, value] : counters_) AddCounter(name, value, &status);
+  AddCounter(kCpuCounter, usage.cpu_ms, &status);
+  AddCounter(kMemoryCounter, usage.memory_kb, &status);
+  AddCounter(kPeakMemoryCounter, usage.peak_memory_kb, &status);
   for (const auto& [stage, times] : stage_times_) {
     stage_time_t stage_time;
     stage_time.stage = Trimmed(stage);

@@ -29,13 +29,16 @@ class StatusReporter {
 
   void CountIn();
   void CountOut();
-  // A scan, or parts of it, given up; cause is a short name such as "scans_overtaken".
+  // A scan, or parts of it, given up; cause is a short name such as "scans overtaken". Goes out as
+  // counter "dropped <cause>".
   void CountDropped(const std::string& cause, std::int64_t number = 1);
-  // A message that could not be used.
+  // A message that could not be used; counter "rejected <channel>: <cause>".
   void CountRejected(const std::string& channel, const std::string& cause);
-  // A named number of one's own; must not fall. Its growth counts as dropped when
-  // counts_as_dropped.
+  // A named number of one's own; must not fall. When counts_as_dropped its growth counts as dropped
+  // and its name goes out as "dropped <name>".
   void SetCounter(const std::string& name, std::int64_t value, bool counts_as_dropped = false);
+  // A named number that may fall: what is now (io/status_counters.h).
+  void SetGauge(const std::string& name, std::int64_t value);
   // What a joiner saw: counters "<name> sections duplicated" and so on; wholes that were given up
   // count as dropped, sections with bad numbers as rejected.
   void SetSectionCounters(const std::string& name, const SectionCounters& counters);
@@ -50,6 +53,7 @@ class StatusReporter {
   // Publishes when a second has passed since the last time.
   void PublishIfDue();
   void Publish();
+  // Everything so far, and what the process takes of the machine now.
   status_t Snapshot() const;
 
  private:

@@ -8,6 +8,7 @@
 #include "io/laser_messages.h"
 #include "io/partial_messages.h"
 #include "io/scan_messages.h"
+#include "io/status_counters.h"
 
 namespace rimod {
 namespace {
@@ -152,6 +153,7 @@ void AssemblerProcess::ReportCounters() {
   status_.SetCounter("missing lines", counters.missing_lines);
   status_.SetCounter("clock jumps", counters.clock_jumps);
   status_.SetCounter("unsent messages", publisher_.num_failed());
+  status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
 }
 
 }  // namespace rimod

@@ -4,11 +4,13 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <lcm/lcm-cpp.hpp>
 #include <thread>
 
 #include "io/message_codec.h"
 #include "io/raw_subscription.h"
+#include "io/status_counters.h"
 #include "io/version.h"
 
 namespace rimod {
@@ -35,7 +37,27 @@ TEST_F(StatusReporterTest, SaysWhoItIs) {
   EXPECT_EQ(status.pid, getpid());
   EXPECT_FALSE(status.host.empty());
   EXPECT_EQ(status.last_error, "");
-  EXPECT_EQ(status.num_counters, 0);
+}
+
+TEST_F(StatusReporterTest, TellsWhatTheProcessTakesOfTheMachine) {
+  const std::int64_t before = CounterOf(reporter_.Snapshot(), kCpuCounter);
+  const auto end = std::clock() + CLOCKS_PER_SEC / 10;
+  while (std::clock() < end) {
+  }
+  const std::vector<char> ballast(20'000'000, 'x');
+  const status_t status = reporter_.Snapshot();
+  EXPECT_GE(CounterOf(status, kCpuCounter), before + 80);
+  EXPECT_GE(CounterOf(status, kMemoryCounter), static_cast<int>(ballast.size() / 1024));
+  EXPECT_GE(CounterOf(status, kPeakMemoryCounter), CounterOf(status, kMemoryCounter));
+}
+
+TEST_F(StatusReporterTest, GaugesMayFallCountersDoNot) {
+  for (const int value : {5, 3}) {
+    reporter_.SetGauge("waiting", value);
+    reporter_.SetCounter("lines", value);
+  }
+  EXPECT_EQ(CounterOf(reporter_.Snapshot(), "waiting"), 3);
+  EXPECT_EQ(CounterOf(reporter_.Snapshot(), "lines"), 5);
 }
 
 TEST_F(StatusReporterTest, CountsByCause) {
@@ -54,11 +76,11 @@ TEST_F(StatusReporterTest, CountsByCause) {
   EXPECT_EQ(status.num_out, 1);
   EXPECT_EQ(status.num_dropped, 9);
   EXPECT_EQ(status.num_rejected, 3);
-  EXPECT_EQ(CounterOf(status, "scans_overtaken"), 3);
+  EXPECT_EQ(CounterOf(status, "dropped scans_overtaken"), 3);
   EXPECT_EQ(CounterOf(status, "rejected LASER: is empty"), 2);
   EXPECT_EQ(CounterOf(status, "rejected RIMOD_SCAN: is empty"), 1);
   EXPECT_EQ(CounterOf(status, "lines"), 70);
-  EXPECT_EQ(CounterOf(status, "incomplete"), 6);
+  EXPECT_EQ(CounterOf(status, "dropped incomplete"), 6);
   EXPECT_EQ(status.last_error, "message on RIMOD_SCAN rejected: is empty");
 }
 
@@ -122,7 +144,7 @@ TEST_F(StatusReporterTest, ManyThreadsMayCount) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(reporter_.Snapshot().num_in, 4000);
-  EXPECT_EQ(CounterOf(reporter_.Snapshot(), "x"), 4000);
+  EXPECT_EQ(CounterOf(reporter_.Snapshot(), "dropped x"), 4000);
 }
 
 }  // namespace

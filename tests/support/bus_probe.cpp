@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "io/process_options.h"
+#include "io/status_counters.h"
 
 namespace rimod {
 
@@ -70,7 +71,7 @@ std::string SumOf(const std::vector<std::uint8_t>& bytes) {
 
 std::int64_t CounterOf(const status_t& status, const std::string& name) {
   for (const counter_t& counter : status.counters) {
-    if (counter.name == name) return counter.value;
+    if (counter.name == name || counter.name == kDroppedPrefix + name) return counter.value;
   }
   return 0;
 }

@@ -75,7 +75,7 @@ std::vector<std::string> SumsOf(const std::vector<Message>& messages) {
   return sums;
 }
 
-// A counter of a status; 0 where it is not listed.
+// A counter of a status by its name, which may leave out "dropped "; 0 where it is not listed.
 std::int64_t CounterOf(const status_t& status, const std::string& name);
 
 }  // namespace rimod

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command lines of rimod-show, rimod-snapshot and rimod-report: exit codes, clear words, nothing on stdout but
+# The command lines of rimod-show, rimod-top, rimod-snapshot and rimod-report: exit codes, clear words, nothing on stdout but
 # results.
 #   commands_test.sh BIN LOG
 set -u
@@ -42,6 +42,21 @@ check "show: no log at all" 1 "zeros.lcm" "$show" "$work/zeros.lcm"
 check "show: a folder" 1 "models" "$show" "$work/models"
 check "show: unknown channel" 2 "NONSENSE" "$show" "$log" --channel NONSENSE=OTHER
 check "show: missing configuration" 2 "none.yaml" "$show" "$log" --config "$work/none.yaml"
+
+top=$bin/rimod-top
+check "top: unknown option" 2 "nonsense" "$top" --nonsense
+check "top: missing log" 1 "$work/missing" "$top" "$work/missing"
+check "top: truncated log" 1 "truncated.lcm" "$top" "$work/truncated.lcm"
+check "top: empty log" 1 "empty.lcm" "$top" "$work/empty.lcm"
+check "top: no log at all" 1 "zeros.lcm" "$top" "$work/zeros.lcm"
+check "top: log of other channels" 1 "nothing of the pipeline" "$top" "$log" \
+  --channel LASER=A --channel LASER_TO_LOCAL=B
+check "top: unknown channel" 2 "NONSENSE" "$top" "$log" --channel NONSENSE=OTHER
+check "top: missing configuration" 2 "none.yaml" "$top" "$log" --config "$work/none.yaml"
+check "top: a log" 0 "" "$top" "$log"
+grep -q "^  LASER  *361 " "$work/stdout" || { echo "FAILED: top: lines:"; cat "$work/stdout"; failures=$((failures + 1)); }
+check "top: a log as JSON" 0 "" "$top" --json "$log"
+grep -q '{"channel":"LASER","messages":361,' "$work/stdout" || { echo "FAILED: top: JSON:"; cat "$work/stdout"; failures=$((failures + 1)); }
 
 snapshot=$bin/rimod-snapshot
 check "snapshot: nothing to draw" 2 "LOG or --scan" "$snapshot" --models "$work/none" --output "$work/out"
