@@ -13,7 +13,7 @@ packages=(
   # LCM and its viewers
   liblcm-dev libglib2.0-dev liblcm-bin liblcm-java libjchart2d-java openjdk-17-jdk-headless openjdk-17-jre
   # tests and demo
-  libgtest-dev libbenchmark-dev iproute2 util-linux xvfb
+  libgtest-dev libbenchmark-dev iproute2 nftables util-linux xvfb
 )
 checks=(clang-format clang-tidy ccache valgrind)
 
