@@ -117,7 +117,7 @@ void Report(const Options& options, int num_sent, double seconds, const Watcher&
     std::printf("%s: out %lld, dropped %lld", process.c_str(),
                 static_cast<long long>(status.num_out), static_cast<long long>(status.num_dropped));
     for (const counter_t& counter : status.counters) {
-      if (counter.name == "scans overtaken" || counter.name == "clouds")
+      if (counter.name == "dropped scans overtaken" || counter.name == "clouds")
         std::printf(", %s %lld", counter.name.c_str(), static_cast<long long>(counter.value));
     }
     for (const stage_time_t& time : status.stage_times) {
