@@ -197,6 +197,7 @@ void MatcherProcess::RebuildDatabase() try {
   for (const auto& [name, model] : bus_models) models.push_back(model);
   database_.emplace(std::move(models), params_, execution);
   bus_models_ = std::move(bus_models);
+  num_models_ = static_cast<std::int64_t>(database_->models().size());
   malloc_trim(0);  // what was read and is not needed any more goes back to the system
   const std::chrono::duration<double, std::milli> elapsed = Clock::now() - begin;
   spdlog::info("looking for {} models; index built in {:.0f} ms", database_->models().size(),
@@ -309,6 +310,7 @@ void MatcherProcess::OnIdle() {
   status_.SetCounter("early looks", num_early_looks_);
   status_.SetCounter("early looks overtaken", num_early_overtaken_);
   status_.SetCounter("unsent messages", publisher_.num_failed());
+  status_.SetGauge("models", num_models_);
   status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_->num_waiting()));
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
   status_.PublishIfDue();

@@ -109,7 +109,8 @@ class MatcherProcess {
   // The sweep that is looked at early: its last look, without objects.
   std::optional<StampedEarlyObjects> early_;
 
-  std::atomic<std::int64_t> last_scan_;  // its utime: looks at that sweep are late
+  std::atomic<std::int64_t> last_scan_;      // its utime: looks at that sweep are late
+  std::atomic<std::int64_t> num_models_{0};  // that are looked for
   std::atomic<std::int64_t> num_early_looks_{0};
   std::atomic<std::int64_t> num_early_overtaken_{0};
 

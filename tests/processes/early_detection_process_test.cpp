@@ -66,6 +66,17 @@ struct GrowingRoom {
 
 class EarlyProcessTest : public ::testing::Test {
  protected:
+  // To the matcher; waits until it looks for it.
+  void GiveModel() {
+    bus_.PublishAll("RIMOD_MODEL", ToSections(BoxModel("box", {0.6, 0.5, 0.7}, 0.03), 2));
+    ASSERT_TRUE(bus_.ListenUntil(
+        [&] {
+          const auto status = bus_.Status("rimod-matcher");
+          return status && CounterOf(*status, "models") == 1;
+        },
+        kLong));
+  }
+
   std::unique_ptr<ChildProcess> Start(const std::string& executable,
                                       std::vector<std::string> arguments = {}) {
     const std::string config = folder_.Write(
@@ -173,8 +184,7 @@ TEST_F(EarlyProcessTest, ALostStepCostsNothingButTheLooksAtThatSweep) {
 
 TEST_F(EarlyProcessTest, TheMatcherTellsEachLookAndTheEnd) {
   const auto matcher = Start("rimod-matcher");
-  bus_.PublishAll("RIMOD_MODEL", ToSections(BoxModel("box", {0.6, 0.5, 0.7}, 0.03), 2));
-  bus_.Listen(milliseconds(500));
+  GiveModel();
   const std::int64_t known_until = room_.growths[1].end.count();
   PublishLook(2, known_until);
   ASSERT_TRUE(WaitForTold([&](const early_detections_t& told) {
@@ -206,8 +216,7 @@ TEST_F(EarlyProcessTest, TheMatcherTellsEachLookAndTheEnd) {
 
 TEST_F(EarlyProcessTest, ASweepOfWhichNothingMoreIsHeardIsWithdrawn) {
   const auto matcher = Start("rimod-matcher");
-  bus_.PublishAll("RIMOD_MODEL", ToSections(BoxModel("box", {0.6, 0.5, 0.7}, 0.03), 2));
-  bus_.Listen(milliseconds(500));
+  GiveModel();
   PublishLook(1, room_.growths[0].end.count());
   ASSERT_TRUE(WaitForTold([](const early_detections_t& told) { return told.is_final != 0; }))
       << matcher->Output();
