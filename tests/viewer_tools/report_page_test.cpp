@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <regex>
-
 #include "viewer_tools/time_plots.h"
 
 namespace rimod {
@@ -57,8 +55,12 @@ TEST(ReportPageTest, NeedsNothingButItself) {
   EXPECT_EQ(page.find("@import"), std::string::npos);
   EXPECT_EQ(page.find("url("), std::string::npos);
   EXPECT_EQ(page.find("http"), std::string::npos);
-  const std::regex reference("(src|href)=\"(?!data:|#)");
-  EXPECT_FALSE(std::regex_search(page, reference));
+  for (const std::string attribute : {"src=\"", "href=\""}) {
+    for (auto at = page.find(attribute); at != std::string::npos; at = page.find(attribute, at)) {
+      at += attribute.size();
+      EXPECT_TRUE(page.compare(at, 5, "data:") == 0 || page[at] == '#') << page.substr(at, 80);
+    }
+  }
 }
 
 TEST(ReportPageTest, TextsAreEscapedWherever) {
