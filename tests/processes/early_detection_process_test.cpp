@@ -200,6 +200,7 @@ TEST_F(EarlyProcessTest, TheMatcherTellsEachLookAndTheEnd) {
   ASSERT_TRUE(WaitForTold([&](const early_detections_t& told) {
     return told.utime == room_.scan.utime && told.is_final;
   })) << matcher->Output();
+  bus_.ListenUntil([&] { return !bus_.Bytes("RIMOD_DETECTIONS").empty(); }, kLong);
   const auto detections = bus_.Messages<detections_t>("RIMOD_DETECTIONS");
   ASSERT_EQ(detections.size(), 1u);
   const early_detections_t last = Told().back();

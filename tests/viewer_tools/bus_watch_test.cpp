@@ -120,7 +120,7 @@ TEST_F(BusWatchTest, HostileMessagesAreCountedAndBounded) {
     status.pid = i;
     status.utime = i % 2 == 0 ? std::numeric_limits<std::int64_t>::min()
                               : std::numeric_limits<std::int64_t>::max();
-    status.num_out = -status.utime / 2;
+    status.num_out = -(status.utime / 2);
     Take("RIMOD_STATUS", status, 0.01 * i);
     status.utime = -(status.utime / 2);
     Take("RIMOD_STATUS", status, 0.01 * i);
