@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "rimod/surface_rendering.h"
 #include "viewer_tools/case_points.h"
 #include "viewer_tools/labels.h"
+#include "viewer_tools/range_colours.h"
 
 namespace rimod {
 namespace {
@@ -59,35 +61,13 @@ bool IsRendered(const RenderedModel& rendered, int row, int column) {
          rendered.point(row, column) >= 0;
 }
 
-struct RangeSpan {
-  double near = 0.5, far = 5.0;  // m
-  double Share(double range) const { return std::log(range / near) / std::log(far / near); }
-};
-
 RangeSpan FindSpan(const RangeImage& image, const Window& window) {
   std::vector<float> ranges;
   const cv::Rect inside = window.pixels & cv::Rect(0, 0, image.width(), image.height());
   for (int row = inside.y; row < inside.br().y; ++row)
     for (int column = inside.x; column < inside.br().x; ++column)
       if (image.measured(row, column)) ranges.push_back(image.range(row, column));
-  if (ranges.empty()) return {};
-  std::sort(ranges.begin(), ranges.end());
-  const double near = ranges[ranges.size() / 50];
-  return {near, std::max<double>(ranges[ranges.size() - 1 - ranges.size() / 20], near * 1.1)};
-}
-
-Colour SceneColour(const RangeImage& image, int row, int column, const RangeSpan& span, int x,
-                   int y) {
-  if (!image.grid().Contains(row, column)) return NeverObservedColour(x, y);
-  switch (image.pixel(row, column)) {
-    case Pixel::kMeasured:
-      return RangeColour(span.Share(image.range(row, column)));
-    case Pixel::kNoReturn:
-      return NoReturnColour();
-    case Pixel::kNeverObserved:
-      break;
-  }
-  return NeverObservedColour(x, y);
+  return SpanOf(std::move(ranges), 0.02, 0.05);
 }
 
 void DrawOutline(const RenderedModel& rendered, const Window& window, const Colour& colour,
@@ -107,7 +87,7 @@ cv::Mat DrawOutlines(const RangeImage& image, const std::vector<CasePose>& poses
   cv::Mat picture(kSide, kSide, CV_8UC3);
   const RangeSpan span = FindSpan(image, window);
   ForEachCanvasPixel(window, [&](int x, int y, int row, int column) {
-    picture.at<Colour>(y, x) = SceneColour(image, row, column, span, x, y);
+    picture.at<Colour>(y, x) = PixelColour(image, row, column, span, x, y);
   });
   for (std::size_t i = poses.size(); i-- > 0;)
     DrawOutline(rendered[i], window, poses[i].colour, &picture);
@@ -121,7 +101,7 @@ cv::Mat DrawDifferences(const RangeImage& image, const RenderedModel& rendered,
   cv::Mat picture(kSide, kSide, CV_8UC3);
   const RangeSpan span = FindSpan(image, window);
   ForEachCanvasPixel(window, [&](int x, int y, int row, int column) {
-    Colour colour = SceneColour(image, row, column, span, x, y);
+    Colour colour = PixelColour(image, row, column, span, x, y);
     if (!IsRendered(rendered, row, column)) {
       colour = Blend(colour, dark, kDimmed);
     } else if (image.grid().Contains(row, column) && image.measured(row, column)) {

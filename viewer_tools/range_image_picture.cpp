@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "viewer_tools/labels.h"
 #include "viewer_tools/pictures.h"
+#include "viewer_tools/range_colours.h"
 
 namespace rimod {
 namespace {
@@ -18,38 +20,13 @@ const cv::Scalar kBackground(32, 30, 28);
 const cv::Scalar kTextColour(230, 230, 230);
 const cv::Scalar kDark(16, 16, 16);
 
-// Ranges between which the colours change, m.
-struct RangeSpan {
-  double near = 0.0;
-  double far = 1.0;
-  // Equal ratios of ranges have equal shares: near things show as much relief as far ones.
-  double Share(double range) const { return std::log(range / near) / std::log(far / near); }
-};
-
 RangeSpan FindSpan(const RangeImage& image) {
   std::vector<float> ranges;
   for (int row = 0; row < image.height(); ++row)
     for (int column = 0; column < image.width(); ++column)
       if (image.measured(row, column)) ranges.push_back(image.range(row, column));
-  if (ranges.empty()) return {};
-  std::sort(ranges.begin(), ranges.end());
   // Single near readings and the view out of windows must not take the colours of the room.
-  const double near = ranges[ranges.size() / 100];
-  const double far = ranges[ranges.size() - 1 - ranges.size() / 10];
-  return {near, std::max(far, near * 1.1)};
-}
-
-Colour PixelColour(const RangeImage& image, int row, int column, const RangeSpan& span, int x,
-                   int y) {
-  switch (image.pixel(row, column)) {
-    case Pixel::kMeasured:
-      return RangeColour(span.Share(image.range(row, column)));
-    case Pixel::kNoReturn:
-      return NoReturnColour();
-    case Pixel::kNeverObserved:
-      break;
-  }
-  return NeverObservedColour(x, y);
+  return SpanOf(std::move(ranges), 0.01, 0.1);
 }
 
 void PaintPixels(const RangeImage& image, const RangeImageLayout& layout, const RangeSpan& span,
