@@ -22,7 +22,7 @@ struct RecordedInput {
   std::vector<PixelIndex> interest_points;
   FeatureSet features;
   Scene scene;
-  std::vector<Correspondence> matches;
+  ModelMatches matches;
   std::vector<Hypothesis> proposed, ranked;
   std::vector<JudgedCandidate> judged;
 };

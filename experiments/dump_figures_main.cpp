@@ -20,6 +20,9 @@
 namespace rimod {
 namespace {
 
+// Proposals written for each that is refined.
+constexpr int kProposedOfRefined = 3;
+
 struct Options {
   std::string models, config, out;
   std::vector<std::string> scans;
@@ -57,22 +60,21 @@ void DumpScan(const NamedScan& named, const ModelDatabase& database, const Pipel
                   T_local_sensor * h.T_sensor_object.cast<double>(), RankFigures(h.figures));
   };
   PipelineParams all = params;
-  all.ranking.max_refined = params.ranking.max_scanned;
+  const int everything = kProposedOfRefined * params.ranking.refined.most;
+  all.ranking.refined = all.ranking.judged = {everything, everything, 0.0};
+  all.ranking.min_screened_score = 0.0;
   int num_found = 0;
-  const std::vector<Correspondence> matches = MatchToModels(features, database, params, execution);
+  const ModelMatches matches = MatchToModels(features, database, params, execution);
   std::vector<Hypothesis> hypotheses =
       ProposeHypotheses(scene, features, matches, database, all, execution, &num_found);
   for (const Hypothesis& h : hypotheses) write('P', h);
-  if (static_cast<int>(hypotheses.size()) > params.ranking.max_refined)
-    hypotheses.resize(params.ranking.max_refined);
-  all.ranking.max_judged = params.ranking.max_refined;
+  hypotheses = BestOfEachModel(hypotheses, params.ranking.refined);
   std::vector<Hypothesis> ranked =
       RankHypotheses(scene, std::move(hypotheses), database, all, execution);
   for (const Hypothesis& h : ranked) write('R', h);
-  if (static_cast<int>(ranked.size()) > params.ranking.max_judged)
-    ranked.resize(params.ranking.max_judged);
+  ranked = BestOfEachModel(ranked, params.ranking.judged);
   for (const JudgedCandidate& j :
-       JudgeCandidates(scene, features, matches, ranked, database, params, execution)) {
+       JudgeCandidates(scene, features, matches, ranked, database, all, execution)) {
     writer->Write('J', named.name, name(j.candidate.model),
                   T_local_sensor * j.candidate.T_sensor_object,
                   JudgementFigures(j.evidence, j.figures, j.support));

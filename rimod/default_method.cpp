@@ -17,6 +17,9 @@ namespace {
 // Rounds that parallel loops over very many small pieces are cut into.
 constexpr std::size_t kBatches = 64;
 
+// Times the matches and checks of a feature where a scene has few.
+constexpr double kMostMatches = 10.0;
+
 // Indices by falling score, ties by index.
 template <typename List>
 std::vector<int> OrderByScore(const List& list) {
@@ -27,12 +30,11 @@ std::vector<int> OrderByScore(const List& list) {
   return order;
 }
 
+// Of one model's correspondences.
 std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondence>& matches,
                                                  const FeatureSet& features,
                                                  const ModelDatabase& database,
-                                                 const PipelineParams& params,
-                                                 const Execution& execution) {
-  const StageScope stage(execution, "hypotheses");
+                                                 const PipelineParams& params) {
   std::vector<Hypothesis> hypotheses;
   hypotheses.reserve(matches.size());
   for (const Correspondence& match : matches) {
@@ -72,20 +74,22 @@ bool SetFigures(const Scene& scene, const ModelDatabase& database, double epsilo
                            params, &figures);
 }
 
-// Scores all hypotheses before refinement, each on its own.
+// Scores all models' hypotheses before refinement, each on its own.
 void ScoreHypotheses(const Scene& scene, const ModelDatabase& database, const RankingParams& params,
-                     const Execution& execution, std::vector<Hypothesis>* hypotheses) {
+                     const Execution& execution, std::vector<std::vector<Hypothesis>>* of_models) {
   execution.parallel_for(kBatches, [&](std::size_t batch) {
-    for (std::size_t i = batch; i < hypotheses->size(); i += kBatches) {
-      Hypothesis& hypothesis = (*hypotheses)[i];
-      if (SetFigures(scene, database, params.coarse_epsilon, params, &hypothesis))
-        hypothesis.score = Probability(kProposalWeights, RankFigures(hypothesis.figures));
+    for (std::vector<Hypothesis>& hypotheses : *of_models) {
+      for (std::size_t i = batch; i < hypotheses.size(); i += kBatches) {
+        Hypothesis& hypothesis = hypotheses[i];
+        if (SetFigures(scene, database, params.coarse_epsilon, params, &hypothesis))
+          hypothesis.score = Probability(kProposalWeights, RankFigures(hypothesis.figures));
+      }
     }
   });
 }
 
-// Best first the hypotheses whose pose differs from all better ones of their model; the others give
-// these their votes. Looks at the max_scanned best.
+// Best first a model's hypotheses whose pose differs from all better ones; the others give these
+// their votes. Looks at the max_scanned best.
 std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses,
                                        const ModelDatabase& database, int max_scanned,
                                        const RankingParams& params) {
@@ -98,7 +102,7 @@ std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses
     const Eigen::Vector3f centre =
         hypothesis.T_sensor_object * database.ranking_models()[hypothesis.model].centre;
     if (!centre.allFinite()) continue;
-    const int same = distinct.FindOrAdd(hypothesis.model, hypothesis.T_sensor_object, centre);
+    const int same = distinct.FindOrAdd(hypothesis.T_sensor_object, centre);
     if (same < static_cast<int>(different.size())) {
       different[same].figures.votes += hypothesis.figures.votes;
     } else {
@@ -108,17 +112,39 @@ std::vector<Hypothesis> DifferentPoses(const std::vector<Hypothesis>& hypotheses
   return different;
 }
 
-// The count best, best first, scored with their votes.
-std::vector<Hypothesis> BestWithVotes(std::vector<Hypothesis> hypotheses,
-                                      const LogisticWeights& weights, int count) {
+// Best first, scored with their votes.
+std::vector<Hypothesis> ByScoreWithVotes(std::vector<Hypothesis> hypotheses,
+                                         const LogisticWeights& weights) {
   for (Hypothesis& hypothesis : hypotheses)
     hypothesis.score = Probability(weights, RankFigures(hypothesis.figures));
-  std::vector<Hypothesis> best;
-  for (const int i : OrderByScore(hypotheses)) {
-    if (static_cast<int>(best.size()) >= count) break;
-    best.push_back(hypotheses[i]);
-  }
-  return best;
+  std::vector<Hypothesis> sorted;
+  sorted.reserve(hypotheses.size());
+  for (const int i : OrderByScore(hypotheses)) sorted.push_back(hypotheses[i]);
+  return sorted;
+}
+
+// Each model's hypotheses, in their order.
+std::vector<std::vector<Hypothesis>> OfEachModel(const std::vector<Hypothesis>& hypotheses,
+                                                 const ModelDatabase& database) {
+  std::vector<std::vector<Hypothesis>> of_models(database.models().size());
+  for (const Hypothesis& hypothesis : hypotheses) of_models[hypothesis.model].push_back(hypothesis);
+  return of_models;
+}
+
+// Of each model different poses, scored with their votes; model after model, best first.
+std::vector<Hypothesis> RankEachModel(const std::vector<std::vector<Hypothesis>>& of_models,
+                                      const ModelDatabase& database, int max_scanned,
+                                      const LogisticWeights& weights, const RankingParams& params,
+                                      const Execution& execution) {
+  std::vector<std::vector<Hypothesis>> ranked(of_models.size());
+  execution.parallel_for(of_models.size(), [&](std::size_t m) {
+    ranked[m] =
+        ByScoreWithVotes(DifferentPoses(of_models[m], database, max_scanned, params), weights);
+  });
+  std::vector<Hypothesis> all;
+  for (const std::vector<Hypothesis>& list : ranked)
+    all.insert(all.end(), list.begin(), list.end());
+  return all;
 }
 
 // ICP with the nearest view's points, then the score that was learnt.
@@ -146,31 +172,71 @@ double ExplainedShare(const Evidence& evidence, const std::vector<char>& explain
   return static_cast<double>(count) / static_cast<double>(evidence.explained.size());
 }
 
+// More matches for each of few features.
+MatchingParams ForFeatures(MatchingParams params, int num_features) {
+  const double wanted = static_cast<double>(params.min_correspondences) / std::max(num_features, 1);
+  const double factor = std::clamp(wanted / params.max_matches, 1.0, kMostMatches);
+  params.max_matches = static_cast<int>(std::lround(factor * params.max_matches));
+  params.max_checks = static_cast<int>(std::lround(factor * params.max_checks));
+  return params;
+}
+
 }  // namespace
 
-std::vector<Correspondence> MatchToModels(const FeatureSet& features, const ModelDatabase& database,
-                                          const PipelineParams& params,
-                                          const Execution& execution) {
+PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDatabase& database) {
+  PipelineParams shared = params;
+  RankingParams& ranking = shared.ranking;
+  const int num_models =
+      ranking.num_models > 0 ? ranking.num_models : static_cast<int>(database.models().size());
+  if (num_models <= ranking.full_models) return shared;
+  const double share = std::sqrt(static_cast<double>(ranking.full_models) / num_models);
+  for (int* const count :
+       {&shared.matching.max_matches, &shared.matching.max_checks,
+        &shared.matching.min_correspondences, &ranking.max_scanned, &ranking.refined.always,
+        &ranking.refined.most, &ranking.judged.always, &ranking.judged.most})
+    *count = static_cast<int>(std::ceil(share * *count));
+  return shared;
+}
+
+ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& database,
+                           const PipelineParams& params, const Execution& execution) {
   const StageScope stage(execution, "matching");
   std::vector<Feature> projected(features.features.size());
-  for (std::size_t i = 0; i < projected.size(); ++i)
-    projected[i].descriptor = database.projection().Project(features.features[i].descriptor);
-  return MatchFeatures(projected, database.projected_descriptors(), params.matching, execution);
+  execution.parallel_for(kBatches, [&](std::size_t batch) {
+    for (std::size_t i = batch; i < projected.size(); i += kBatches)
+      projected[i].descriptor = database.projection().Project(features.features[i].descriptor);
+  });
+  const MatchingParams matching =
+      ForFeatures(params.matching, static_cast<int>(features.features.size()));
+  ModelMatches matches(database.models().size());
+  for (int m = 0; m < static_cast<int>(matches.size()); ++m) {
+    matches[m] = MatchFeatures(projected, database.projected_descriptors(m), matching, execution);
+    for (Correspondence& match : matches[m]) match.model_feature += database.first_feature(m);
+  }
+  return matches;
 }
 
 std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& features,
-                                          const std::vector<Correspondence>& matches,
+                                          const ModelMatches& matches,
                                           const ModelDatabase& database,
                                           const PipelineParams& params, const Execution& execution,
                                           int* num_found) {
-  std::vector<Hypothesis> hypotheses =
-      PosesFromCorrespondences(matches, features, database, params, execution);
-  *num_found = static_cast<int>(hypotheses.size());
+  std::vector<std::vector<Hypothesis>> hypotheses(matches.size());
+  {
+    const StageScope stage(execution, "hypotheses");
+    execution.parallel_for(matches.size(), [&](std::size_t m) {
+      hypotheses[m] = PosesFromCorrespondences(matches[m], features, database, params);
+    });
+  }
+  *num_found = 0;
+  for (const std::vector<Hypothesis>& list : hypotheses)
+    *num_found += static_cast<int>(list.size());
   const StageScope stage(execution, "scoring");
   const RankingParams& ranking = params.ranking;
   ScoreHypotheses(scene, database, ranking, execution, &hypotheses);
-  return BestWithVotes(DifferentPoses(hypotheses, database, ranking.max_scanned, ranking),
-                       kProposalWeights, ranking.max_refined);
+  return BestOfEachModel(RankEachModel(hypotheses, database, ranking.max_scanned, kProposalWeights,
+                                       ranking, execution),
+                         ranking.refined);
 }
 
 std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
@@ -179,32 +245,54 @@ std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesi
   const StageScope stage(execution, "refinement");
   const RankingParams& ranking = params.ranking;
   RefineAndRank(scene, database, params, execution, &hypotheses);
-  return BestWithVotes(DifferentPoses(hypotheses, database, ranking.max_refined, ranking),
-                       kRankWeights, ranking.max_judged);
+  return BestOfEachModel(RankEachModel(OfEachModel(hypotheses, database), database,
+                                       ranking.refined.most, kRankWeights, ranking, execution),
+                         ranking.judged);
+}
+
+std::vector<Hypothesis> BestOfEachModel(const std::vector<Hypothesis>& hypotheses,
+                                        const ModelQuota& quota) {
+  std::vector<Hypothesis> best;
+  int model = -1, kept = 0;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    if (hypothesis.model != model) kept = 0;
+    model = hypothesis.model;
+    if (kept >= (hypothesis.score < quota.min_score ? quota.always : quota.most)) continue;
+    best.push_back(hypothesis);
+    ++kept;
+  }
+  return best;
 }
 
 std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
-                                             const std::vector<Correspondence>& matches,
+                                             const ModelMatches& matches,
                                              const std::vector<Hypothesis>& ranked,
                                              const ModelDatabase& database,
                                              const PipelineParams& params,
                                              const Execution& execution) {
   const StageScope stage(execution, "validation");
-  const RefinementSchedule schedule = params.refinement.BeforeJudging();
   const FeatureSupportCounter support(features, matches, database);
   std::vector<JudgedCandidate> judged(ranked.size());
+  const auto judge = [&](const SurfaceSample& sample, const RefinementSchedule& schedule,
+                         const Eigen::Isometry3f& T_sensor_object, JudgedCandidate* result) {
+    result->candidate.T_sensor_object =
+        RefinePose(scene, sample, T_sensor_object, schedule).cast<double>();
+    result->evidence = GatherEvidence(scene, database.judged_models()[result->candidate.model],
+                                      result->candidate.T_sensor_object, params.evidence);
+    result->support = support.Count(result->candidate);
+    result->candidate.score = Probability(
+        kJudgementTrees, JudgementFigures(result->evidence, result->figures, result->support));
+  };
   execution.parallel_for(ranked.size(), [&](std::size_t i) {
     JudgedCandidate& result = judged[i];
     result.candidate.model = ranked[i].model;
     result.figures = ranked[i].figures;
     const JudgedModel& model = database.judged_models()[result.candidate.model];
-    result.candidate.T_sensor_object =
-        RefinePose(scene, model.sample(), ranked[i].T_sensor_object, schedule).cast<double>();
-    result.evidence =
-        GatherEvidence(scene, model, result.candidate.T_sensor_object, params.evidence);
-    result.support = support.Count(result.candidate);
-    result.candidate.score = Probability(
-        kJudgementTrees, JudgementFigures(result.evidence, result.figures, result.support));
+    judge(model.coarse_sample(), params.refinement.BeforeScreening(), ranked[i].T_sensor_object,
+          &result);
+    if (result.candidate.score < params.ranking.min_screened_score) return;
+    judge(model.sample(), params.refinement.BeforeJudging(),
+          result.candidate.T_sensor_object.cast<float>(), &result);
   });
   std::stable_sort(judged.begin(), judged.end(),
                    [](const JudgedCandidate& a, const JudgedCandidate& b) {
@@ -244,14 +332,15 @@ std::vector<Candidate> ChooseCandidates(const Scene& scene,
 }
 
 StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
-                                const ModelDatabase& database, const PipelineParams& params,
+                                const ModelDatabase& database, const PipelineParams& all_params,
                                 const Execution& execution) {
+  const PipelineParams params = SharedAmongModels(all_params, database);
   const Scene scene = [&] {
     const StageScope stage(execution, "scene_normals");
     return Scene(image, params.evidence.normal_radius, execution);
   }();
   StagedCandidates found;
-  const std::vector<Correspondence> matches = MatchToModels(features, database, params, execution);
+  const ModelMatches matches = MatchToModels(features, database, params, execution);
   const std::vector<Hypothesis> ranked = RankHypotheses(
       scene,
       ProposeHypotheses(scene, features, matches, database, params, execution, &found.num_found),

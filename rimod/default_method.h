@@ -14,17 +14,21 @@ namespace rimod {
 
 // The default method: a pose from every correspondence, ranked by the views' points, refined by
 // ICP, judged by all the evidence that rendering gives, and a choice in which each measured pixel
-// is explained once. docs/algorithm.md leads through it.
+// is explained once. Until that choice what is found of a model does not depend on the others.
+// docs/algorithm.md leads through it.
 
 StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
                                 const ModelDatabase& database, const PipelineParams& params,
                                 const Execution& execution);
 
+// The parameters for so many models: with more of them each gets less work (RankingParams).
+PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDatabase& database);
+
 // Its steps, also for training the judgement.
 
-// Each feature's correspondences. Stage matching.
-std::vector<Correspondence> MatchToModels(const FeatureSet& features, const ModelDatabase& database,
-                                          const PipelineParams& params, const Execution& execution);
+// Each model's correspondences, the scene's features in order. Stage matching.
+ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& database,
+                           const PipelineParams& params, const Execution& execution);
 
 struct Hypothesis {
   int model = 0;  // in the database
@@ -33,20 +37,25 @@ struct Hypothesis {
   RankingFigures figures;
 };
 
-// A pose or two from every correspondence, scored as they are, without hopeless ones: the
-// max_refined best of different poses, best first. num_found: before any was left out. Stages
-// hypotheses, scoring.
+// A pose or two from every correspondence, scored as they are, without hopeless ones: of each model
+// the best of different poses, by the quota of refinement. Model after model, best first.
+// num_found: before any was left out. Stages hypotheses, scoring.
 std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& features,
-                                          const std::vector<Correspondence>& matches,
+                                          const ModelMatches& matches,
                                           const ModelDatabase& database,
                                           const PipelineParams& params, const Execution& execution,
                                           int* num_found);
 
-// Hypotheses refined and ranked by what the views' points say then: the max_judged best of
-// different poses, best first. Stage refinement.
+// Hypotheses (model after model) refined and ranked by what the views' points say then: of each
+// model the best of different poses, by the quota of judging. Model after model, best first. Stage
+// refinement.
 std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
                                        const ModelDatabase& database, const PipelineParams& params,
                                        const Execution& execution);
+
+// Of hypotheses in such an order, of each model the first as the quota says.
+std::vector<Hypothesis> BestOfEachModel(const std::vector<Hypothesis>& hypotheses,
+                                        const ModelQuota& quota);
 
 // Everything that judging a candidate found.
 struct JudgedCandidate {
@@ -56,9 +65,10 @@ struct JudgedCandidate {
   Evidence evidence;
 };
 
-// The ranked candidates refined in all degrees of freedom and judged, best first. Stage validation.
+// The ranked candidates refined in all degrees of freedom and judged, best first, ties by model.
+// Stage validation.
 std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
-                                             const std::vector<Correspondence>& matches,
+                                             const ModelMatches& matches,
                                              const std::vector<Hypothesis>& ranked,
                                              const ModelDatabase& database,
                                              const PipelineParams& params,

@@ -1,8 +1,8 @@
 #include "rimod/descriptor_projection.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace rimod {
 namespace {
@@ -14,25 +14,45 @@ Eigen::VectorXf ToVector(const Descriptor& descriptor) {
   return vector;
 }
 
+// Row k: the cosine of k half periods over the cells (DCT-II, orthonormal).
+Eigen::MatrixXd Cosines(int resolution) {
+  Eigen::MatrixXd cosines(resolution, resolution);
+  for (int k = 0; k < resolution; ++k) {
+    const double scale = std::sqrt((k == 0 ? 1.0 : 2.0) / resolution);
+    for (int cell = 0; cell < resolution; ++cell)
+      cosines(k, cell) = scale * std::cos(M_PI * (cell + 0.5) * k / resolution);
+  }
+  return cosines;
+}
+
+struct Frequency {
+  int row = 0, column = 0;
+};
+
+// All but the constant, low ones first.
+std::vector<Frequency> Frequencies(int resolution) {
+  std::vector<Frequency> frequencies;
+  for (int row = 0; row < resolution; ++row)
+    for (int column = 0; column < resolution; ++column)
+      if (row + column > 0) frequencies.push_back({row, column});
+  const auto squared = [](const Frequency& f) { return f.row * f.row + f.column * f.column; };
+  std::stable_sort(frequencies.begin(), frequencies.end(),
+                   [&](const Frequency& a, const Frequency& b) { return squared(a) < squared(b); });
+  return frequencies;
+}
+
 }  // namespace
 
-DescriptorProjection::DescriptorProjection(const std::vector<const Descriptor*>& descriptors,
-                                           int dimensions) {
-  if (descriptors.empty()) return;
-  // Thinned: some thousand descriptors give the same axes as all.
-  constexpr std::size_t kMaxSamples = 4000;
-  const std::size_t step = 1 + descriptors.size() / kMaxSamples;
-  const Eigen::Index size = static_cast<Eigen::Index>(descriptors.front()->size());
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(size, size);
-  for (std::size_t i = 0; i < descriptors.size(); i += step) {
-    const Eigen::VectorXd values = ToVector(*descriptors[i]).cast<double>();
-    products.selfadjointView<Eigen::Lower>().rankUpdate(values);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(products);
-  const Eigen::Index kept = std::min<Eigen::Index>(dimensions, size);
-  axes_.resize(kept, size);
-  for (Eigen::Index i = 0; i < kept; ++i)
-    axes_.row(i) = solver.eigenvectors().col(size - 1 - i).transpose().cast<float>();
+DescriptorProjection::DescriptorProjection(int resolution, int dimensions) {
+  const Eigen::MatrixXd cosines = Cosines(resolution);
+  std::vector<Frequency> frequencies = Frequencies(resolution);
+  frequencies.resize(std::min(frequencies.size(), static_cast<std::size_t>(dimensions)));
+  axes_.resize(static_cast<Eigen::Index>(frequencies.size()), resolution * resolution);
+  for (std::size_t i = 0; i < frequencies.size(); ++i)
+    for (int row = 0; row < resolution; ++row)
+      for (int column = 0; column < resolution; ++column)
+        axes_(static_cast<Eigen::Index>(i), row * resolution + column) = static_cast<float>(
+            cosines(frequencies[i].row, row) * cosines(frequencies[i].column, column));
 }
 
 Descriptor DescriptorProjection::Project(const Descriptor& descriptor) const {

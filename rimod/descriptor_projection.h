@@ -1,24 +1,26 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "rimod/features.h"
 
 namespace rimod {
 
-// The directions in which a set of descriptors varies most (principal components): descriptors
-// projected onto them are shorter and keep their distances as well as that many values can. Empty
-// cells stand at the mean.
+// Descriptors shortened to their lowest spatial frequencies (two-dimensional cosine transform,
+// orthonormal): nearby cells resemble each other, so a few values keep most of the distance between
+// two. The axes are the same for all models: what is found of one does not depend on which others
+// are looked for. Empty cells stand at the mean.
 class DescriptorProjection {
  public:
-  // All of one size; at most that many dimensions.
-  DescriptorProjection(const std::vector<const Descriptor*>& descriptors, int dimensions);
+  // Of patches of resolution x resolution cells onto at most so many dimensions, without the
+  // constant part, which descriptors do not have.
+  DescriptorProjection(int resolution, int dimensions);
 
-  // Values that projected descriptors have; 0 when there were no descriptors.
+  // Values that projected descriptors have.
   int dimensions() const { return static_cast<int>(axes_.rows()); }
 
-  // In kDescriptorUnit like what it came from; values that do not fit are clipped.
+  // In kDescriptorUnit like what it came from; values that do not fit are clipped. Empty for a
+  // descriptor of another size.
   Descriptor Project(const Descriptor& descriptor) const;
 
  private:

@@ -11,16 +11,9 @@ constexpr float kSameNormal = 0.8f;  // cosine
 }  // namespace
 
 FeatureSupportCounter::FeatureSupportCounter(const FeatureSet& features,
-                                             const std::vector<Correspondence>& matches,
+                                             const ModelMatches& matches,
                                              const ModelDatabase& database)
-    : features_(features),
-      matches_(matches),
-      database_(database),
-      first_(features.features.size() + 1, matches.size()) {
-  for (std::size_t i = matches.size(); i-- > 0;) first_[matches[i].scene_feature] = i;
-  for (std::size_t i = features.features.size(); i-- > 0;)
-    first_[i] = std::min(first_[i], first_[i + 1]);
-}
+    : features_(features), matches_(matches), database_(database) {}
 
 FeatureSupport FeatureSupportCounter::Count(const Candidate& candidate) const {
   const ObjectModel& model = database_.models()[candidate.model];
@@ -35,20 +28,24 @@ FeatureSupport FeatureSupportCounter::Count(const Candidate& candidate) const {
       continue;
     ++support.inside;
     on_object.normal = T_object_sensor.linear() * features_.features[i].normal;
-    support.matching += std::any_of(
-        matches_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
-        matches_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]),
-        [&](const Correspondence& match) { return Explains(match, candidate.model, on_object); });
+    support.matching += HasMatch(candidate.model, static_cast<int>(i), on_object);
   }
   return support;
 }
 
-bool FeatureSupportCounter::Explains(const Correspondence& match, int model,
-                                     const Feature& on_object) const {
-  const ModelDatabase::PlacedFeature& model_feature = database_.feature(match.model_feature);
-  if (model_feature.model != model) return false;
-  return (model_feature.position - on_object.position).squaredNorm() < kSamePlace * kSamePlace &&
-         model_feature.normal.dot(on_object.normal) > kSameNormal;
+bool FeatureSupportCounter::HasMatch(int model, int scene_feature, const Feature& on_object) const {
+  const std::vector<Correspondence>& matches = matches_[model];
+  const auto first = std::partition_point(
+      matches.begin(), matches.end(),
+      [&](const Correspondence& match) { return match.scene_feature < scene_feature; });
+  for (auto match = first; match != matches.end() && match->scene_feature == scene_feature;
+       ++match) {
+    const ModelDatabase::PlacedFeature& feature = database_.feature(match->model_feature);
+    if ((feature.position - on_object.position).squaredNorm() < kSamePlace * kSamePlace &&
+        feature.normal.dot(on_object.normal) > kSameNormal)
+      return true;
+  }
+  return false;
 }
 
 }  // namespace rimod

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "rimod/candidates.h"
@@ -19,19 +18,18 @@ struct FeatureSupport {
 // Counts it for many poses. Refers to what it is made from.
 class FeatureSupportCounter {
  public:
-  // matches: by scene feature, rising, as MatchFeatures gives them.
-  FeatureSupportCounter(const FeatureSet& features, const std::vector<Correspondence>& matches,
+  FeatureSupportCounter(const FeatureSet& features, const ModelMatches& matches,
                         const ModelDatabase& database);
 
   FeatureSupport Count(const Candidate& candidate) const;
 
  private:
-  bool Explains(const Correspondence& match, int model, const Feature& on_object) const;
+  // A scene feature, placed in the object's frame.
+  bool HasMatch(int model, int scene_feature, const Feature& on_object) const;
 
   const FeatureSet& features_;
-  const std::vector<Correspondence>& matches_;
+  const ModelMatches& matches_;
   const ModelDatabase& database_;
-  std::vector<std::size_t> first_;  // match of each feature; one more: the end
 };
 
 }  // namespace rimod

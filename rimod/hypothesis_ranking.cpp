@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "rimod/check.h"
 
@@ -47,6 +48,12 @@ void Normalise(float count, float outside_count, RankingFigures* figures) {
   figures->jumps /= outside_count;
 }
 
+void CheckQuota(const std::string& name, const ModelQuota& quota, int largest) {
+  CheckWithin(("ranking " + name + "_most").c_str(), quota.most, 1, largest);
+  CheckWithin(("ranking " + name + "_always").c_str(), quota.always, 0, quota.most);
+  CheckWithin(("ranking " + name + "_min_score").c_str(), quota.min_score, 0.0, 1.0);
+}
+
 }  // namespace
 
 void RankingParams::Validate() const {
@@ -58,9 +65,12 @@ void RankingParams::Validate() const {
   CheckWithin("ranking first_points", first_points, 1, 10000);
   CheckWithin("ranking first_min_known", first_min_known, 0.0, 1.0);
   CheckWithin("ranking first_min_share", first_min_share, 0.0, 1.0);
+  CheckWithin("ranking num_models", num_models, 0, 1'000'000);
+  CheckWithin("ranking full_models", full_models, 1, 1'000'000);
   CheckWithin("ranking max_scanned", max_scanned, 1, 100'000'000);
-  CheckWithin("ranking max_refined", max_refined, 1, 1'000'000);
-  CheckWithin("ranking max_judged", max_judged, 1, 100'000);
+  CheckQuota("refined", refined, 1'000'000);
+  CheckQuota("judged", judged, 100'000);
+  CheckWithin("ranking min_screened_score", min_screened_score, 0.0, 1.0);
   CheckWithin("ranking same_distance", same_distance, 1e-4, 10.0);
   CheckWithin("ranking same_angle", same_angle, 1e-4, 3.2);
 }

@@ -12,6 +12,13 @@ namespace rimod {
 // Fast scoring of very many pose hypotheses with the validation points of the nearest view (paper,
 // section III-C) and its outside points, for sorting out all but the best.
 
+// How many of a model's hypotheses go on: the best ones anyway, more of them if they are probable.
+struct ModelQuota {
+  int always = 1;          // the best so many, whatever their score; >= 0
+  int most = 1;            // .. and up to this; >= always, >= 1
+  double min_score = 0.0;  // .. with at least this score; 0 .. 1
+};
+
 struct RankingParams {
   double min_normal_cosine = 0.7;  // of a correspondence's normals after the turn; -1 .. 1
   // rad; a correspondence whose normals stay this far apart after the turn gives a tilted pose,
@@ -21,12 +28,18 @@ struct RankingParams {
   double coarse_epsilon =
       0.2;                     // m, depth difference of a point at its place before refinement; > 0
   double fine_epsilon = 0.05;  // m, after it; > 0
-  int first_points = 12;       // looked at first; hopeless hypotheses are given up then; >= 1
+  int first_points = 24;       // looked at first; hopeless hypotheses are given up then; >= 1
   double first_min_known = 0.15;  // of them must have nothing in front; 0 .. 1
-  double first_min_share = 0.35;  // of those must be at their place; 0 .. 1
-  int max_scanned = 4000;       // best hypotheses among which different poses are looked for; >= 1
-  int max_refined = 500;        // best of them that are refined; >= 1
-  int max_judged = 100;         // best of them after refinement that are judged; >= 1
+  double first_min_share = 0.55;  // of those must be at their place; 0 .. 1
+  // How much work goes into a model: with more than full_models of them the work grows with the
+  // root of their number, so that each gets less. Of the matches of a feature and the quotas.
+  int num_models = 0;     // models that share it; 0 = those of the database
+  int full_models = 8;    // >= 1
+  int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1
+  ModelQuota refined{40, 120, 0.005};
+  ModelQuota judged{6, 40, 0.015};
+  // Those that a first look finds less probable are not looked at closely; 0 .. 1
+  double min_screened_score = 0.05;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
   void Validate() const;

@@ -10,13 +10,18 @@ namespace rimod {
 namespace {
 
 constexpr float kSurfaceCell = 0.025f;   // m, cells that tell what lies on the surface
-constexpr double kSampleSpacing = 0.03;  // m, of the points for refinement
+constexpr double kSampleSpacing = 0.03;  // m, of the points for refinement ..
+constexpr double kCoarseSpacing = 0.06;  // m, .. and for a first one
 
 }  // namespace
 
 JudgedModel::JudgedModel(const ObjectModel& model) : model_(&model) {
-  ObjectModel thin = ThinSurface(model, std::max(kSampleSpacing, model.point_spacing));
-  sample_ = {std::move(thin.points), std::move(thin.normals)};
+  const auto sample = [&](double spacing) {
+    ObjectModel thin = ThinSurface(model, std::max(spacing, model.point_spacing));
+    return SurfaceSample{std::move(thin.points), std::move(thin.normals)};
+  };
+  sample_ = sample(kSampleSpacing);
+  coarse_sample_ = sample(kCoarseSpacing);
   for (const double factor : {1.6, 2.5, 4.0})
     thinned_.push_back(ThinSurface(model, factor * model.point_spacing));
 

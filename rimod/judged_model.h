@@ -14,8 +14,9 @@ class JudgedModel {
   explicit JudgedModel(const ObjectModel& model);
 
   const ObjectModel& model() const { return *model_; }
-  // About evenly thinned to the spacing (m), for refinement.
+  // The surface about evenly thinned, for refinement, and thinner still for a first one.
   const SurfaceSample& sample() const { return sample_; }
+  const SurfaceSample& coarse_sample() const { return coarse_sample_; }
   // Model whose points are thinned so far that their discs still close the surface for pixels of
   // this size (m).
   const ObjectModel& Thinned(double pixel_size) const;
@@ -24,7 +25,7 @@ class JudgedModel {
 
  private:
   const ObjectModel* model_;
-  SurfaceSample sample_;
+  SurfaceSample sample_, coarse_sample_;
   std::vector<ObjectModel> thinned_;  // by rising spacing; the first is the model itself
   Eigen::Vector3f grid_origin_;
   Eigen::Vector3i grid_size_;

@@ -12,6 +12,7 @@ void MatchingParams::Validate() const {
   CheckWithin("matching projected_dimensions", projected_dimensions, 1, 256);
   CheckWithin("matching max_matches", max_matches, 1, 100'000);
   CheckWithin("matching max_checks", max_checks, 1, 100'000'000);
+  CheckWithin("matching min_correspondences", min_correspondences, 0, 10'000'000);
   CheckWithin("matching min_shared_cells", min_shared_cells, 0, 256);
   CheckWithin("matching min_roughness", min_roughness, 0.0, 10.0);
 }

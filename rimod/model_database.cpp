@@ -76,28 +76,30 @@ void ModelDatabase::PreparePaperMethod(const PipelineParams& params, const Execu
 }
 
 void ModelDatabase::PrepareDefaultMethod(const PipelineParams& params, const Execution& execution) {
-  projection_ = std::make_unique<DescriptorProjection>(Descriptors(models_),
+  projection_ = std::make_unique<DescriptorProjection>(params.range_patch.resolution,
                                                        params.matching.projected_dimensions);
-  const std::size_t size = static_cast<std::size_t>(projection_->dimensions());
-  std::vector<std::int16_t> projected(placed_features_.size() * size);
   ranking_models_.resize(models_.size());
   std::vector<std::optional<JudgedModel>> judged(models_.size());
+  std::vector<std::optional<DescriptorIndex>> indices(models_.size());
   execution.parallel_for(models_.size(), [&](std::size_t m) {
     ObjectModel& model = models_[m];
-    auto out = projected.begin() + static_cast<std::ptrdiff_t>(first_features_[m] * size);
+    std::vector<std::int16_t> projected;
+    projected.reserve(static_cast<std::size_t>(first_features_[m + 1] - first_features_[m]) *
+                      projection_->dimensions());
     for (const ModelView& view : model.views) {
       for (const Feature& feature : view.features) {
         const Descriptor values = projection_->Project(feature.descriptor);
-        out = std::copy(values.begin(), values.end(), out);
+        projected.insert(projected.end(), values.begin(), values.end());
       }
     }
+    indices[m].emplace(std::move(projected), std::max(projection_->dimensions(), 1), Execution{});
     ranking_models_[m] = MakeRankingModel(model);
     for (ModelView& view : model.views) FreeLists(&view);
     judged[m].emplace(model);
   });
   for (std::optional<JudgedModel>& model : judged) judged_models_.push_back(std::move(*model));
-  projected_descriptors_ = std::make_unique<DescriptorIndex>(
-      std::move(projected), std::max(static_cast<int>(size), 1), execution);
+  for (std::optional<DescriptorIndex>& index : indices)
+    projected_descriptors_.push_back(std::move(*index));
 }
 
 }  // namespace rimod

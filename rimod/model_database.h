@@ -48,10 +48,13 @@ class ModelDatabase {
   const std::vector<const Feature*>& features(int model) const { return features_[model]; }
   const std::vector<CollisionShape>& collision_shapes() const { return collision_shapes_; }
 
-  // For the default method: the descriptors shortened for faster search, and the models as its
-  // stages want them.
+  // For the default method: each model's descriptors shortened for faster search, numbered from the
+  // model's first feature on, and the models as its stages want them. What is kept of a model does
+  // not depend on the others.
   const DescriptorProjection& projection() const { return *projection_; }
-  const DescriptorIndex& projected_descriptors() const { return *projected_descriptors_; }
+  const DescriptorIndex& projected_descriptors(int model) const {
+    return projected_descriptors_[model];
+  }
   const std::vector<RankingModel>& ranking_models() const { return ranking_models_; }
   const std::vector<JudgedModel>& judged_models() const { return judged_models_; }
 
@@ -70,7 +73,7 @@ class ModelDatabase {
   std::unique_ptr<DescriptorIndex> descriptors_;
   std::vector<CollisionShape> collision_shapes_;
   std::unique_ptr<DescriptorProjection> projection_;
-  std::unique_ptr<DescriptorIndex> projected_descriptors_;
+  std::vector<DescriptorIndex> projected_descriptors_;  // of each model
   std::vector<RankingModel> ranking_models_;
   std::vector<JudgedModel> judged_models_;  // refer to models_
 };

@@ -88,8 +88,9 @@ PipelineParams OwnParams() {
   params.range_patch.mask_empty_cells = false;
   params.model_views.ground_margin = 0.5;
   params.matching.max_descriptor_distance = 0.16;
-  params.matching.max_matches = 25;
-  params.matching.max_checks = 600;
+  params.matching.max_matches = 5;
+  params.matching.max_checks = 60;
+  params.matching.min_correspondences = 5000;
   return params;
 }
 

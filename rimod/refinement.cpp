@@ -105,6 +105,7 @@ Vector6f Solve(Equations equations, double damping, double tilt_damping, float r
 
 void RefinementParams::Validate() const {
   CheckWithin("refinement coarse_iterations", coarse_iterations, 0, 100);
+  CheckWithin("refinement screening_iterations", screening_iterations, 0, 100);
   CheckWithin("refinement fine_iterations", fine_iterations, 0, 100);
   CheckWithin("refinement coarse_gate", coarse_gate, 1e-3, 10.0);
   CheckWithin("refinement fine_gate", fine_gate, 1e-3, 10.0);
@@ -116,6 +117,10 @@ void RefinementParams::Validate() const {
 
 RefinementSchedule RefinementParams::BeforeRanking() const {
   return {coarse_iterations, coarse_gate, fine_gate, damping, tilt_damping};
+}
+
+RefinementSchedule RefinementParams::BeforeScreening() const {
+  return {screening_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
 }
 
 RefinementSchedule RefinementParams::BeforeJudging() const {

@@ -24,7 +24,8 @@ struct RefinementSchedule {
 
 struct RefinementParams {
   int coarse_iterations = 6;        // of every hypothesis that is ranked; 0 .. 100
-  int fine_iterations = 10;         // of the candidates that are judged; 0 .. 100
+  int screening_iterations = 4;     // of the candidates that are judged, before a first look
+  int fine_iterations = 10;         // of those that pass it; 0 .. 100
   double coarse_gate = 0.15;        // m, farther pairs are left out at first ..; > 0
   double fine_gate = 0.05;          // m, .. and in the end; > 0
   double judged_first_gate = 0.08;  // m, the same for the refinement before judging
@@ -33,6 +34,7 @@ struct RefinementParams {
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
   void Validate() const;
   RefinementSchedule BeforeRanking() const;
+  RefinementSchedule BeforeScreening() const;
   RefinementSchedule BeforeJudging() const;
 };
 

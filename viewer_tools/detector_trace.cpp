@@ -20,29 +20,21 @@ CandidateList ToCandidates(const std::vector<Hypothesis>& hypotheses) {
   return candidates;
 }
 
-template <typename T>
-std::vector<T> First(const std::vector<T>& list, int count) {
-  const auto size = std::min(list.size(), static_cast<std::size_t>(std::max(count, 0)));
-  return {list.begin(), list.begin() + static_cast<std::ptrdiff_t>(size)};
-}
-
 void TraceDefaultMethod(const Scene& scene, const ModelDatabase& database,
                         const PipelineParams& params, const Execution& execution,
                         DetectorTrace* trace) {
-  const int max_refined = params.ranking.max_refined;
-  const int max_judged = params.ranking.max_judged;
+  const RankingParams& ranking = params.ranking;
   trace->matches = MatchToModels(trace->features, database, params, execution);
   // More than the method itself keeps, so that what it drops can be seen.
   PipelineParams all = params;
-  all.ranking.max_refined = std::max(params.ranking.max_scanned, max_refined);
-  all.ranking.max_judged = all.ranking.max_refined;
+  const int everything = std::max(ranking.max_scanned, ranking.refined.most);
+  all.ranking.refined = all.ranking.judged = {everything, everything, 0.0};
   int num_found = 0;
   const std::vector<Hypothesis> proposed = ProposeHypotheses(scene, trace->features, trace->matches,
                                                              database, all, execution, &num_found);
-  const std::vector<Hypothesis> kept = First(proposed, max_refined);
-  all.ranking.max_refined = max_refined;
+  const std::vector<Hypothesis> kept = BestOfEachModel(proposed, ranking.refined);
   const std::vector<Hypothesis> refined = RankHypotheses(scene, kept, database, all, execution);
-  const std::vector<Hypothesis> ranked = First(refined, max_judged);
+  const std::vector<Hypothesis> ranked = BestOfEachModel(refined, ranking.judged);
   trace->judged =
       JudgeCandidates(scene, trace->features, trace->matches, ranked, database, params, execution);
   trace->chosen = ChooseCandidates(scene, trace->judged, database, params, execution);
@@ -107,9 +99,11 @@ std::optional<JudgedCandidate> JudgePose(const Scene& scene, const DetectorTrace
   Hypothesis hypothesis;
   hypothesis.model = candidate.model;
   hypothesis.T_sensor_object = candidate.T_sensor_object.cast<float>();
-  hypothesis.figures.descriptor_distance = MedianDistance(trace.matches);
+  hypothesis.figures.descriptor_distance = MedianDistance(trace.matches[candidate.model]);
+  PipelineParams all = params;
+  all.ranking.judged = {1, 1, 0.0};
   const std::vector<Hypothesis> ranked =
-      RankHypotheses(scene, {hypothesis}, database, params, execution);
+      RankHypotheses(scene, {hypothesis}, database, all, execution);
   const std::vector<JudgedCandidate> judged =
       JudgeCandidates(scene, trace.features, trace.matches, ranked, database, params, execution);
   if (judged.empty()) return std::nullopt;
