@@ -164,14 +164,6 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
   });
 }
 
-// The share of a candidate's pixels that are explained already.
-double ExplainedShare(const Evidence& evidence, const std::vector<char>& explained) {
-  if (evidence.explained.empty()) return 1.0;
-  const auto count = std::count_if(evidence.explained.begin(), evidence.explained.end(),
-                                   [&](int pixel) { return explained[pixel] != 0; });
-  return static_cast<double>(count) / static_cast<double>(evidence.explained.size());
-}
-
 // More matches for each of few features.
 MatchingParams ForFeatures(MatchingParams params, int num_features) {
   const double wanted = static_cast<double>(params.min_correspondences) / std::max(num_features, 1);
@@ -286,6 +278,7 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
   execution.parallel_for(ranked.size(), [&](std::size_t i) {
     JudgedCandidate& result = judged[i];
     result.candidate.model = ranked[i].model;
+    result.rank_score = ranked[i].score;
     result.figures = ranked[i].figures;
     const JudgedModel& model = database.judged_models()[result.candidate.model];
     judge(model.coarse_sample(), params.refinement.BeforeScreening(), ranked[i].T_sensor_object,
@@ -301,55 +294,43 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
   return judged;
 }
 
+JudgedScan ToJudgedScan(const Scene& scene, const std::vector<JudgedCandidate>& judged,
+                        const ModelDatabase& database, int num_found) {
+  JudgedScan scan;
+  scan.num_pixels = scene.grid().size();
+  scan.T_local_sensor = scene.image().T_local_sensor();
+  scan.num_found = num_found;
+  scan.models = CandidateModelsOf(database.models());
+  for (const JudgedCandidate& j : judged)
+    scan.candidates.push_back({j.candidate, j.rank_score, RunsOf(j.evidence.explained)});
+  return scan;
+}
+
 std::vector<Candidate> ChooseCandidates(const Scene& scene,
                                         const std::vector<JudgedCandidate>& judged,
                                         const ModelDatabase& database, const PipelineParams& params,
                                         const Execution& execution) {
   const StageScope stage(execution, "collisions");
-  std::vector<char> explained(static_cast<std::size_t>(scene.grid().size()), 0);
-  std::vector<Candidate> chosen;
-  for (const JudgedCandidate& judgement : judged) {
-    const Candidate& candidate = judgement.candidate;
-    if (candidate.score < params.choice.min_probability) break;
-    if (ExplainedShare(judgement.evidence, explained) > params.choice.max_explained_share) continue;
-    const ObjectModel& model = database.models()[candidate.model];
-    const auto centre = [&](const Candidate& c) -> Eigen::Vector3d {
-      const ObjectModel& m = database.models()[c.model];
-      return c.T_sensor_object * Eigen::Vector3d(0.5 * (m.box_min + m.box_max));
-    };
-    const bool too_near = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate& better) {
-      const double diameter =
-          std::min(model.Diameter(), database.models()[better.model].Diameter());
-      const double share = better.model == candidate.model ? params.choice.same_class_distance
-                                                           : params.choice.other_class_distance;
-      return (centre(better) - centre(candidate)).norm() < share * diameter;
-    });
-    if (too_near) continue;
-    for (const int pixel : judgement.evidence.explained) explained[pixel] = 1;
-    chosen.push_back(candidate);
-  }
-  return chosen;
+  const JudgedScan scan = ToJudgedScan(scene, judged, database, static_cast<int>(judged.size()));
+  return ChooseCandidates(scan, params.choice).validated;
 }
 
-StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
-                                const ModelDatabase& database, const PipelineParams& all_params,
-                                const Execution& execution) {
+JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
+                          const ModelDatabase& database, const PipelineParams& all_params,
+                          const Execution& execution) {
   const PipelineParams params = SharedAmongModels(all_params, database);
   const Scene scene = [&] {
     const StageScope stage(execution, "scene_normals");
     return Scene(image, params.evidence.normal_radius, execution);
   }();
-  StagedCandidates found;
+  int num_found = 0;
   const ModelMatches matches = MatchToModels(features, database, params, execution);
   const std::vector<Hypothesis> ranked = RankHypotheses(
-      scene,
-      ProposeHypotheses(scene, features, matches, database, params, execution, &found.num_found),
+      scene, ProposeHypotheses(scene, features, matches, database, params, execution, &num_found),
       database, params, execution);
   const std::vector<JudgedCandidate> judged =
       JudgeCandidates(scene, features, matches, ranked, database, params, execution);
-  found.validated = ChooseCandidates(scene, judged, database, params, execution);
-  for (const JudgedCandidate& candidate : judged) found.scored.push_back(candidate.candidate);
-  return found;
+  return ToJudgedScan(scene, judged, database, num_found);
 }
 
 }  // namespace rimod

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "rimod/candidate_choice.h"
 #include "rimod/candidates.h"
 #include "rimod/execution.h"
 #include "rimod/feature_support.h"
@@ -17,9 +18,11 @@ namespace rimod {
 // is explained once. Until that choice what is found of a model does not depend on the others.
 // docs/algorithm.md leads through it.
 
-StagedCandidates FindByEvidence(const RangeImage& image, const FeatureSet& features,
-                                const ModelDatabase& database, const PipelineParams& params,
-                                const Execution& execution);
+// All of it but the choice, which is candidate_choice's: what is found of a model depends on the
+// scan and that model.
+JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
+                          const ModelDatabase& database, const PipelineParams& params,
+                          const Execution& execution);
 
 // The parameters for so many models: with more of them each gets less work (RankingParams).
 PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDatabase& database);
@@ -59,7 +62,8 @@ std::vector<Hypothesis> BestOfEachModel(const std::vector<Hypothesis>& hypothese
 
 // Everything that judging a candidate found.
 struct JudgedCandidate {
-  Candidate candidate;  // score: probability that it is right
+  Candidate candidate;      // score: probability that it is right
+  double rank_score = 0.0;  // the hypothesis's
   RankingFigures figures;
   FeatureSupport support;
   Evidence evidence;
@@ -74,8 +78,11 @@ std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSe
                                              const PipelineParams& params,
                                              const Execution& execution);
 
-// Best first, those that are probable enough and mostly explain pixels that no better one explains.
-// Stage collisions.
+// As the choice wants them. num_found: hypotheses before any was left out.
+JudgedScan ToJudgedScan(const Scene& scene, const std::vector<JudgedCandidate>& judged,
+                        const ModelDatabase& database, int num_found);
+
+// The chosen ones of judged candidates, best first. Stage collisions.
 std::vector<Candidate> ChooseCandidates(const Scene& scene,
                                         const std::vector<JudgedCandidate>& judged,
                                         const ModelDatabase& database, const PipelineParams& params,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rimod/candidate_choice.h"
 #include "rimod/detection.h"
 #include "rimod/execution.h"
 #include "rimod/feature_extraction.h"
@@ -29,5 +30,12 @@ RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
 DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,
                               const ModelDatabase& database, const PipelineParams& params,
                               const Execution& execution);
+
+// DetectObjects of the default method before its last step, which is ChooseDetections
+// (candidate_choice.h): for matchers that share the models. Throws as DetectObjects, also when the
+// parameters choose another method.
+JudgedScan JudgeObjects(const RangeImage& image, const FeatureSet& features,
+                        const ModelDatabase& database, const PipelineParams& params,
+                        const Execution& execution);
 
 }  // namespace rimod

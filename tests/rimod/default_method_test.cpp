@@ -211,17 +211,21 @@ TEST(DefaultMethodTest, ThreadsDoNotMatter) {
   }
 }
 
-TEST(FindByEvidenceTest, TellsWhatItFoundStageByStage) {
+TEST(FindByEvidenceTest, TellsWhatItJudged) {
   const RangeImage image = ArmchairImage();
   const FeatureSet features = ExtractFeatures(image, Params(), Execution{});
-  const StagedCandidates found =
+  const JudgedScan found =
       FindByEvidence(image, features, ArmchairDatabase(), Params(), Execution{});
-  EXPECT_GE(found.num_found, static_cast<int>(found.scored.size()));
-  EXPECT_LE(found.validated.size(), found.scored.size());
-  for (const Candidate& candidate : found.validated) {
-    EXPECT_TRUE(std::any_of(found.scored.begin(), found.scored.end(), [&](const Candidate& s) {
-      return s.T_sensor_object.matrix() == candidate.T_sensor_object.matrix();
-    }));
+  EXPECT_EQ(found.num_pixels, image.grid().size());
+  ASSERT_EQ(found.models.size(), 1u);
+  EXPECT_EQ(found.models[0].name, ArmchairDatabase().models()[0].name);
+  ASSERT_FALSE(found.candidates.empty());
+  EXPECT_GE(found.num_found, static_cast<int>(found.candidates.size()));
+  for (const ExplainingCandidate& item : found.candidates) {
+    for (const PixelRun& run : item.explained) {
+      EXPECT_GE(run.first, 0);
+      EXPECT_LE(run.first + run.count, found.num_pixels);
+    }
   }
 }
 
