@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <queue>
 #include <stdexcept>
 
 namespace rimod {
 namespace {
 
 constexpr int kLeafSize = 8;
-constexpr int kLanes = 4;  // values that processors work on at once
+constexpr std::size_t kBranches = 128;  // room for those of a search
+constexpr int kLanes = 4;               // values that processors work on at once
 
 // Equal to float(value * kDescriptorUnit) for every value (a test compares), but divisions of
 // floats are vectorised.
@@ -25,7 +25,7 @@ float ToMetres(std::int16_t value) {
 struct Branch {
   double bound_sq = 0.0;
   int node = 0;
-  bool operator<(const Branch& other) const {  // std::priority_queue serves the largest
+  bool operator<(const Branch& other) const {  // heaps have the largest on top
     return bound_sq != other.bound_sq ? bound_sq > other.bound_sq : node > other.node;
   }
 };
@@ -192,16 +192,25 @@ void DescriptorIndex::Sort(int first, int middle, int last, int dimension) {
 
 // What is looked for, in the forms in which it is compared.
 struct DescriptorIndex::Query {
-  explicit Query(const Descriptor& descriptor, int stride)
-      : metres(descriptor.size()), filled(descriptor.size()), steps(stride, 0) {
+  Query(const Descriptor& descriptor, int stride)
+      : values(3 * static_cast<std::size_t>(stride), 0.0f),
+        metres(values.data()),
+        filled(metres + stride),
+        steps(filled + stride) {
     for (std::size_t d = 0; d < descriptor.size(); ++d) {
-      metres[d] = ToMetres(descriptor[d]);
-      filled[d] = descriptor[d] == kEmptyCell ? 0.0f : 1.0f;
-      steps[d] = descriptor[d] == kEmptyCell ? 0 : descriptor[d];
+      if (descriptor[d] == kEmptyCell) continue;
+      values[d] = ToMetres(descriptor[d]);
+      values[d + stride] = 1.0f;
+      values[d + 2 * static_cast<std::size_t>(stride)] = descriptor[d];
     }
   }
-  std::vector<float> metres, filled;
-  std::vector<std::int32_t> steps;
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+
+  std::vector<float> values;
+  const float* const metres;  // 0 for empty cells
+  const float* const filled;  // 1, 0 for empty cells
+  const float* const steps;   // kDescriptorUnit, 0 for empty cells
 };
 
 double DescriptorIndex::DistanceSq(const Query& query, int place) const {
@@ -216,12 +225,12 @@ double DescriptorIndex::DistanceSq(const Query& query, int place) const {
 
 float DescriptorIndex::RoughSumSq(const Query& query, int place) const {
   const std::int16_t* const values = ValuesAt(place);
-  const std::int32_t* const steps = query.steps.data();
+  const float* const steps = query.steps;
   float sums[kLanes] = {};
   const auto add = [&](const auto& value_of) {
     for (int d = 0; d < stride_; d += kLanes) {
       for (int lane = 0; lane < kLanes; ++lane) {
-        const float difference = static_cast<float>(steps[d + lane] - value_of(values[d + lane]));
+        const float difference = steps[d + lane] - static_cast<float>(value_of(values[d + lane]));
         sums[lane] += difference * difference;
       }
     }
@@ -276,12 +285,14 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
   // Far more than rounding makes of any sum; the second part counts for the smallest.
   constexpr double kRoughFactor = 1.001, kRoughOffset = 1e-9;  // m^2
 
-  std::priority_queue<Branch> branches;
-  branches.push({0.0, 0});
+  std::vector<Branch> branches;  // the nearest on top
+  branches.reserve(kBranches);
+  branches.push_back({0.0, 0});
   int checks = 0;
   while (!branches.empty() && checks < max_checks) {
-    const Branch branch = branches.top();
-    branches.pop();
+    const Branch branch = branches.front();
+    std::pop_heap(branches.begin(), branches.end());
+    branches.pop_back();
     if (branch.bound_sq > worst_sq) break;  // all others are farther, too
     int node = branch.node;
     while (nodes_[node].dimension >= 0) {
@@ -289,7 +300,10 @@ std::vector<DescriptorMatch> DescriptorIndex::FindNear(const Descriptor& query, 
       const int near = gap < 0.0 ? node + 1 : nodes_[node].right;
       const int far = gap < 0.0 ? nodes_[node].right : node + 1;
       const double bound_sq = std::max(branch.bound_sq, gap * gap);
-      if (bound_sq <= worst_sq) branches.push({bound_sq, far});
+      if (bound_sq <= worst_sq) {
+        branches.push_back({bound_sq, far});
+        std::push_heap(branches.begin(), branches.end());
+      }
       node = near;
     }
     for (int place = nodes_[node].right; place < nodes_[node].last; ++place) {
