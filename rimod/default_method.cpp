@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kBatches = 64;
 
 // Times the matches and checks of a feature where a scene has few.
-constexpr double kMostMatches = 10.0;
+constexpr double kMostMatches = 5.0;
 
 // Indices by falling score, ties by index.
 template <typename List>

@@ -63,8 +63,10 @@ void RankingParams::Validate() const {
   CheckWithin("ranking coarse_epsilon", coarse_epsilon, 1e-3, 10.0);
   CheckWithin("ranking fine_epsilon", fine_epsilon, 1e-3, 10.0);
   CheckWithin("ranking first_points", first_points, 1, 10000);
-  CheckWithin("ranking first_min_known", first_min_known, 0.0, 1.0);
   CheckWithin("ranking first_min_share", first_min_share, 0.0, 1.0);
+  CheckWithin("ranking second_points", second_points, 1, 10000);
+  CheckWithin("ranking second_min_share", second_min_share, 0.0, 1.0);
+  CheckWithin("ranking min_known", min_known, 0.0, 1.0);
   CheckWithin("ranking num_models", num_models, 0, 1'000'000);
   CheckWithin("ranking full_models", full_models, 1, 1'000'000);
   CheckWithin("ranking max_scanned", max_scanned, 1, 100'000'000);
@@ -134,10 +136,17 @@ bool CompareViewPoints(const Scene& scene, const RankingModel& model,
     }
   };
   const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
+  const auto hopeless = [&](std::size_t compared, double min_share) {
+    return figures->known < params.min_known * static_cast<double>(compared) ||
+           figures->hits < min_share * figures->known;
+  };
   compare(0, first);
-  if (figures->known < params.first_min_known * static_cast<double>(first)) return false;
-  if (figures->hits < params.first_min_share * figures->known) return false;
-  compare(first, count);
+  if (hopeless(first, params.first_min_share)) return false;
+  const std::size_t second =
+      std::clamp(static_cast<std::size_t>(params.second_points), first, count);
+  compare(first, second);
+  if (hopeless(second, params.second_min_share)) return false;
+  compare(second, count);
   scene.Project(view.outside, T_sensor_object, 0, view.outside.size(), &projected);
   for (std::size_t i = 0; i < view.outside.size(); ++i)
     CountOutside(scene, projected.pixels[i], projected.ranges[i], eps, figures);

@@ -28,16 +28,19 @@ struct RankingParams {
   double coarse_epsilon =
       0.2;                     // m, depth difference of a point at its place before refinement; > 0
   double fine_epsilon = 0.05;  // m, after it; > 0
-  int first_points = 24;       // looked at first; hopeless hypotheses are given up then; >= 1
-  double first_min_known = 0.15;  // of them must have nothing in front; 0 .. 1
-  double first_min_share = 0.55;  // of those must be at their place; 0 .. 1
+  // Hopeless hypotheses are given up after their first points, and after some more:
+  int first_points = 12;           // >= 1
+  double first_min_share = 0.5;    // of those with nothing in front at their place; 0 .. 1
+  int second_points = 48;          // >= 1
+  double second_min_share = 0.58;  // 0 .. 1
+  double min_known = 0.15;         // of them with nothing in front; 0 .. 1
   // How much work goes into a model: with more than full_models of them the work grows with the
   // root of their number, so that each gets less. Of the matches of a feature and the quotas.
   int num_models = 0;     // models that share it; 0 = those of the database
   int full_models = 8;    // >= 1
   int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1
-  ModelQuota refined{40, 120, 0.005};
-  ModelQuota judged{6, 40, 0.015};
+  ModelQuota refined{60, 120, 0.004};
+  ModelQuota judged{8, 40, 0.01};
   // Those that a first look finds less probable are not looked at closely; 0 .. 1
   double min_screened_score = 0.05;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0

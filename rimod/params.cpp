@@ -90,7 +90,7 @@ PipelineParams OwnParams() {
   params.matching.max_descriptor_distance = 0.16;
   params.matching.max_matches = 5;
   params.matching.max_checks = 60;
-  params.matching.min_correspondences = 5000;
+  params.matching.min_correspondences = 2500;
   return params;
 }
 

@@ -20,8 +20,9 @@ PipelineParams Params() {
   params.range_image.resolution = 0.01;
   params.model_views.azimuths = 8;
   params.model_views.elevations = 1;
-  params.ranking.max_refined = 200;
-  params.ranking.max_judged = 60;
+  params.matching.max_matches = 20;
+  params.ranking.refined = {10, 200, 0.001};
+  params.ranking.judged = {10, 60, 0.001};
   return params;
 }
 
@@ -139,7 +140,7 @@ struct Steps {
   RangeImage image;
   Scene scene;
   FeatureSet features;
-  std::vector<Correspondence> matches;
+  ModelMatches matches;
   int num_found = 0;
   std::vector<Hypothesis> proposed, ranked;
 };
@@ -152,8 +153,8 @@ void ExpectBestFirst(const List& list) {
 TEST(DefaultMethodTest, TheTruePoseIsProposedRankedAndJudged) {
   const Steps steps(Execution{});
   EXPECT_GE(steps.num_found, static_cast<int>(steps.proposed.size()));
-  EXPECT_LE(static_cast<int>(steps.proposed.size()), Params().ranking.max_refined);
-  EXPECT_LE(static_cast<int>(steps.ranked.size()), Params().ranking.max_judged);
+  EXPECT_LE(static_cast<int>(steps.proposed.size()), Params().ranking.refined.most);
+  EXPECT_LE(static_cast<int>(steps.ranked.size()), Params().ranking.judged.most);
   ExpectBestFirst(steps.proposed);
   ExpectBestFirst(steps.ranked);
   const auto near = [](double distance, double angle) {
@@ -227,6 +228,71 @@ TEST(FindByEvidenceTest, TellsWhatItJudged) {
       EXPECT_LE(run.first + run.count, found.num_pixels);
     }
   }
+}
+
+TEST(DefaultMethodTest, WhatIsFoundOfAModelDoesNotDependOnTheOthers) {
+  PipelineParams params = Params();
+  params.ranking.num_models = 20;  // so that the work is shared equally in both databases
+  const ModelDatabase alone({BuildModel(Record(Armchair()), params, Execution{})}, params,
+                            Execution{});
+  const ModelDatabase many(
+      {BuildModel(Record(Armchair()), params, Execution{}),
+       BuildModel(Record(Stool()), params, Execution{}), BoxModel("aaa", {0.6, 0.5, 0.4}, 0.03)},
+      params, OnThreads(2));
+  const RangeImage image = ArmchairImage();
+  const FeatureSet features = ExtractFeatures(image, params, Execution{});
+  const JudgedScan one = FindByEvidence(image, features, alone, params, Execution{});
+  const JudgedScan all = FindByEvidence(image, features, many, params, OnThreads(2));
+  ASSERT_FALSE(one.candidates.empty());
+  std::vector<const ExplainingCandidate*> same;
+  for (const ExplainingCandidate& candidate : all.candidates)
+    if (all.models[candidate.candidate.model].name == one.models.front().name)
+      same.push_back(&candidate);
+  ASSERT_EQ(same.size(), one.candidates.size());
+  EXPECT_GT(all.candidates.size(), one.candidates.size());
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    EXPECT_EQ(same[i]->candidate.score, one.candidates[i].candidate.score);
+    EXPECT_EQ(same[i]->rank_score, one.candidates[i].rank_score);
+    EXPECT_EQ(same[i]->candidate.T_sensor_object.matrix(),
+              one.candidates[i].candidate.T_sensor_object.matrix());
+  }
+}
+
+TEST(DefaultMethodTest, ManyModelsShareTheWork) {
+  PipelineParams params = Params();
+  params.ranking.full_models = 8;
+  params.ranking.refined = {40, 120, 0.005};
+  params.ranking.num_models = 8;
+  EXPECT_EQ(SharedAmongModels(params, ArmchairDatabase()).ranking.refined.most, 120);
+  params.ranking.num_models = 32;
+  const PipelineParams shared = SharedAmongModels(params, ArmchairDatabase());
+  EXPECT_EQ(shared.ranking.refined.always, 20);
+  EXPECT_EQ(shared.ranking.refined.most, 60);
+  EXPECT_EQ(shared.ranking.refined.min_score, 0.005);
+  EXPECT_EQ(shared.matching.max_matches, (params.matching.max_matches + 1) / 2);
+  params.ranking.num_models = 1'000'000;
+  EXPECT_EQ(SharedAmongModels(params, ArmchairDatabase()).ranking.judged.always, 1);
+  params.ranking.num_models = 0;  // as many as the database has: one
+  EXPECT_EQ(SharedAmongModels(params, ArmchairDatabase()).ranking.refined.most, 120);
+}
+
+TEST(BestOfEachModelTest, TheBestGoOnAnywayMoreIfProbable) {
+  std::vector<Hypothesis> hypotheses;
+  for (const auto& [model, score] : std::vector<std::pair<int, double>>{
+           {0, 0.9}, {0, 0.5}, {0, 0.4}, {0, 0.3}, {2, 0.01}, {2, 0.005}, {2, 0.001}}) {
+    Hypothesis hypothesis;
+    hypothesis.model = model;
+    hypothesis.score = score;
+    hypotheses.push_back(hypothesis);
+  }
+  const auto scores = [&](const ModelQuota& quota) {
+    std::vector<double> kept;
+    for (const Hypothesis& h : BestOfEachModel(hypotheses, quota)) kept.push_back(h.score);
+    return kept;
+  };
+  EXPECT_EQ(scores({2, 3, 0.1}), (std::vector<double>{0.9, 0.5, 0.4, 0.01, 0.005}));
+  EXPECT_EQ(scores({0, 9, 0.45}), (std::vector<double>{0.9, 0.5}));
+  EXPECT_EQ(scores({1, 1, 0.0}), (std::vector<double>{0.9, 0.01}));
 }
 
 }  // namespace

@@ -69,9 +69,9 @@ DetectionResult Detect(const Scan& scan, const ModelDatabase& database,
 PipelineParams QuickParams(Method method) {
   PipelineParams params = DefaultParams(method);
   params.range_image.resolution = 0.01;
-  params.matching.max_matches = 20;
-  params.ranking.max_refined = 150;
-  params.ranking.max_judged = 40;
+  params.matching.max_matches = 8;
+  params.ranking.refined = {10, 150, 0.001};
+  params.ranking.judged = {10, 40, 0.001};
   params.model_views.azimuths = 8;
   params.model_views.elevations = 1;
   params.model_views.min_elevation = 0.25;

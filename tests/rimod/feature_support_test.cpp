@@ -31,7 +31,7 @@ class FeatureSupportTest : public testing::Test {
 
   FeatureSupport Count(const FeatureSet& features,
                        const std::vector<Correspondence>& matches) const {
-    return FeatureSupportCounter(features, matches, database_).Count({0, kPose, 0.0});
+    return FeatureSupportCounter(features, {matches}, database_).Count({0, kPose, 0.0});
   }
 
   PipelineParams params_;

@@ -17,8 +17,9 @@ constexpr double kDepth = 2.0, kEpsilon = 0.1;
 RankingParams Params() {
   RankingParams params;
   params.first_points = 4;
-  params.first_min_known = 0.0;
+  params.min_known = 0.0;
   params.first_min_share = 0.25;
+  params.second_min_share = 0.25;
   return params;
 }
 
@@ -113,12 +114,18 @@ TEST(CompareViewPointsTest, HopelessOnesAreGivenUp) {
   RankingParams patient = Params();
   patient.first_min_share = 0.0;
   EXPECT_GT(Compare(ModelOf(points), patient)->at_place, 0.8);
+  // The second look: 44 of the first 48 points are at their place.
+  patient.second_min_share = 0.95;
+  EXPECT_FALSE(Compare(ModelOf(points), patient));
+  patient.second_points = 54;
+  patient.second_min_share = 0.9;
+  EXPECT_TRUE(Compare(ModelOf(points), patient));
   // Nearly all hidden: one point is no reason to go on.
   std::vector<Eigen::Vector3f> hidden(3, PointAt(5, 5, kDepth + 1.0));
   hidden.push_back(PointAt(5, 5, kDepth));
   EXPECT_TRUE(Compare(ModelOf(hidden)));
   RankingParams strict = Params();
-  strict.first_min_known = 0.5;
+  strict.min_known = 0.5;
   EXPECT_FALSE(Compare(ModelOf(hidden), strict));
 }
 

@@ -125,7 +125,7 @@ TEST(ModelDatabaseTest, MayBeEmpty) {
   EXPECT_EQ(database.descriptors().size(), 0);
   PipelineParams params = Params();
   params.method = Method::kDefault;
-  EXPECT_EQ(ModelDatabase({}, params, Execution{}).projected_descriptors().size(), 0);
+  EXPECT_EQ(ModelDatabase({}, params, Execution{}).first_feature(0), 0);
 }
 
 TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
@@ -149,8 +149,11 @@ TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
       EXPECT_EQ(one.models()[m].views[v].viewpoint, models[m].views[v].viewpoint);
     }
   }
-  ASSERT_EQ(one.projected_descriptors().size(), total);
-  ASSERT_EQ(two.projected_descriptors().size(), total);
+  for (int m = 0; m < 3; ++m) {
+    const int count = one.first_feature(m + 1) - one.first_feature(m);
+    ASSERT_EQ(one.projected_descriptors(m).size(), count);
+    ASSERT_EQ(two.projected_descriptors(m).size(), count);
+  }
   std::vector<const Feature*> features;
   for (const ObjectModel& model : models)
     for (const ModelView& view : model.views)
@@ -163,10 +166,12 @@ TEST(ModelDatabaseTest, HasWhatTheDefaultMethodWants) {
     const Descriptor projected = one.projection().Project(feature.descriptor);
     EXPECT_EQ(projected.size(), 7u);
     EXPECT_EQ(projected, two.projection().Project(feature.descriptor));
+    const int model = one.feature(i).model, first = one.first_feature(model);
     const std::vector<DescriptorMatch> same =
-        one.projected_descriptors().FindNear(projected, total, 1e-6, total);
-    EXPECT_TRUE(std::any_of(same.begin(), same.end(),
-                            [i](const DescriptorMatch& match) { return match.index == i; }));
+        one.projected_descriptors(model).FindNear(projected, total, 1e-6, total);
+    EXPECT_TRUE(std::any_of(same.begin(), same.end(), [&](const DescriptorMatch& match) {
+      return first + match.index == i;
+    }));
   }
 }
 

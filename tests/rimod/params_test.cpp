@@ -34,6 +34,15 @@ struct CountField {
 #stage, #name, [](PipelineParams & p) -> int& { return p.stage.name; }, { __VA_ARGS__ } \
   }
 
+// Of a quota, as the configuration calls it.
+#define QUOTA(name, field, type, ...)                                                             \
+  {                                                                                               \
+    "ranking", #name "_" #field, [](PipelineParams& p) -> type& { return p.ranking.name.field; }, \
+    {                                                                                             \
+      __VA_ARGS__                                                                                 \
+    }                                                                                             \
+  }
+
 const std::vector<RealField>& RealFields() {
   static const std::vector<RealField> fields = {
       REAL(range_image, resolution, 0.0, 0.0009, 0.11),
@@ -90,7 +99,11 @@ const std::vector<RealField>& RealFields() {
       REAL(ranking, coarse_epsilon, 0.0, -0.1),
       REAL(ranking, fine_epsilon, 0.0, -0.1),
       REAL(ranking, first_min_share, -0.1, 1.1),
-      REAL(ranking, first_min_known, -0.1, 1.1),
+      REAL(ranking, second_min_share, -0.1, 1.1),
+      REAL(ranking, min_known, -0.1, 1.1),
+      QUOTA(refined, min_score, double, -0.1, 1.1),
+      QUOTA(judged, min_score, double, -0.1, 1.1),
+      REAL(ranking, min_screened_score, -0.1, 1.1),
       REAL(ranking, min_tilt, -0.1, 3.3),
       REAL(ranking, max_tilt, -0.1, 3.3),
       REAL(ranking, same_distance, 0.0, -0.1),
@@ -142,6 +155,7 @@ const std::vector<CountField>& CountFields() {
       COUNT(model_views, validation_points, 0, 10001),
       COUNT(matching, max_matches, 0, -5),
       COUNT(matching, max_checks, 0),
+      COUNT(matching, min_correspondences, -1, 10000001),
       COUNT(goodsac, max_correspondences, 2),
       COUNT(goodsac, max_trials, 0),
       COUNT(goodsac, max_triples, 0),
@@ -155,9 +169,15 @@ const std::vector<CountField>& CountFields() {
       COUNT(validation, min_pixels, 0),
       COUNT(matching, projected_dimensions, 0, 257),
       COUNT(ranking, first_points, 0),
-      COUNT(ranking, max_refined, 0),
-      COUNT(ranking, max_judged, 0),
+      COUNT(ranking, second_points, 0, 10001),
+      COUNT(ranking, num_models, -1, 1000001),
+      COUNT(ranking, full_models, 0, 1000001),
+      QUOTA(refined, always, int, -1, 1000000),
+      QUOTA(refined, most, int, 0, 1000001),
+      QUOTA(judged, always, int, -1, 1000000),
+      QUOTA(judged, most, int, 0, 1000001),
       COUNT(refinement, coarse_iterations, -1, 101),
+      COUNT(refinement, screening_iterations, -1, 101),
       COUNT(refinement, fine_iterations, -1, 101),
       COUNT(ranking, max_scanned, 0),
   };
@@ -166,6 +186,7 @@ const std::vector<CountField>& CountFields() {
 
 #undef REAL
 #undef COUNT
+#undef QUOTA
 
 TEST(PipelineParamsTest, WhatAMethodStartsFromIsLegal) {
   for (const Method method : {Method::kPaper, Method::kDefault}) {
