@@ -30,6 +30,15 @@ constexpr int kCloudQueueCapacity = 100;
 
 constexpr std::int64_t kNoScan = std::numeric_limits<std::int64_t>::min();
 
+// Without points.
+StampedScan StampOf(const StampedScan& scan) {
+  return {scan.utime, scan.utime_end, scan.num_lines, scan.num_missing_lines, {}};
+}
+
+bool IsSameScan(const StampedScan& a, const StampedScan& b) {
+  return a.utime == b.utime && a.utime_end == b.utime_end && a.num_lines == b.num_lines;
+}
+
 }  // namespace
 
 ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
@@ -40,6 +49,7 @@ ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
       pool_(num_threads),
       joiner_(JoinerParamsFrom(configuration.bus)),
       partial_joiner_(JoinerParamsFrom(configuration.bus)),
+      patience_(static_cast<int>(1e3 * configuration.bus.join_patience)),
       placer_(params_.cloud, !clouds.poses.empty()),
       status_(out, channels.status, "rimod-extractor"),
       publisher_(out, configuration.bus),
@@ -54,7 +64,13 @@ ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
                           [this](scan_t section) { return OnSection(std::move(section)); }));
   subscriptions_.push_back(SubscribeTo<partial_scan_t>(
       in, channels.partial_scan, kQueueCapacity, observer,
-      [this](partial_scan_t section) { return OnPartialSection(std::move(section)); }));
+      [this](partial_scan_t section) { return OnPartialSection(std::move(section), true); }));
+  subscriptions_.push_back(SubscribeTo<partial_scan_t>(
+      in, channels.scan_ahead, kQueueCapacity, observer,
+      [this](partial_scan_t section) { return OnPartialSection(std::move(section), false); }));
+  subscriptions_.push_back(
+      SubscribeTo<scan_end_t>(in, channels.scan_end, kQueueCapacity, observer,
+                              [this](const scan_end_t& message) { return OnScanEnd(message); }));
   SubscribeToClouds(in, clouds);
 }
 
@@ -78,22 +94,57 @@ std::string ExtractorProcess::OnSection(scan_t section) {
   if (!sections) return "";
   JoinedScan joined = JoinScanSections(*sections);
   if (!joined.scan) return joined.error;
+  if (IsKnownAlready(*joined.scan)) return "";
+  last_given_ = StampOf(*joined.scan);
+  repetition_until_.reset();
   Give(std::move(*joined.scan));
   return "";
 }
 
-std::string ExtractorProcess::OnPartialSection(partial_scan_t section) {
+// Once only: who replays a scan wants it to be worked on again.
+bool ExtractorProcess::IsKnownAlready(const StampedScan& scan) {
+  if (!repetition_until_ || Clock::now() > *repetition_until_ || !IsSameScan(scan, *last_given_))
+    return false;
+  repetition_until_.reset();
+  return true;
+}
+
+std::string ExtractorProcess::OnPartialSection(partial_scan_t section, bool look) {
   const auto sections = partial_joiner_.Add(std::move(section.section), Clock::now());
   if (!sections) return "";
   const JoinedSweepGrowth joined = SweepGrowthFrom(section.utime, section.step, *sections);
   if (!joined.growth) return joined.error;
+  if (joined.growth->step == 0) last_given_.reset();
   if (!growing_.Add(*joined.growth)) return "";  // a step is missing: the scan itself will come
+  GiveWhenWhole();
+  if (!look) return "";
   StampedScan scan;
   scan.utime = growing_.sweep_begin().count();
   scan.utime_end = growing_.end().count();
   scan.scan = *growing_.scan();
   num_partial_overtaken_ += worker_.GiveWhenIdle({/*is_partial=*/true, std::move(scan)});
   return "";
+}
+
+std::string ExtractorProcess::OnScanEnd(const scan_end_t& message) {
+  const SweepEndFromMessage end = FromMessage(message);
+  if (!end.end) return end.error;
+  sweep_end_ = *end.end;
+  GiveWhenWhole();
+  return "";
+}
+
+void ExtractorProcess::GiveWhenWhole() {
+  if (!sweep_end_ || !growing_.IsWhole(*sweep_end_)) return;
+  StampedScan scan = {sweep_end_->begin.count(), sweep_end_->end.count(), sweep_end_->num_lines,
+                      sweep_end_->num_missing_lines, *growing_.scan()};
+  scan.scan.T_local_sensor = sweep_end_->T_local_sensor;
+  sweep_end_.reset();
+  if (last_given_ && IsSameScan(scan, *last_given_)) return;
+  ++num_ahead_;
+  last_given_ = StampOf(scan);
+  repetition_until_ = Clock::now() + patience_;
+  Give(std::move(scan));
 }
 
 std::string ExtractorProcess::OnCloud(const bot_core::pointcloud2_t& message) {
@@ -179,6 +230,7 @@ void ExtractorProcess::OnIdle() {
   joiner_.GiveUpStale(Clock::now());
   partial_joiner_.GiveUpStale(Clock::now());
   status_.SetSectionCounters("scan", joiner_.counters());
+  status_.SetCounter("scans known ahead", num_ahead_);
   status_.SetCounter("partial scans described", num_partial_out_);
   status_.SetCounter("partial scans overtaken", num_partial_overtaken_);
   if (takes_clouds_) ReportClouds();

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +22,13 @@
 #include "rimod/cloud_placer.h"
 #include "rimod/growing_scan.h"
 #include "rimod/partial_scan_t.hpp"
+#include "rimod/scan_end_t.hpp"
 
 namespace rimod {
 
 // Scans in, their range images and features out. Scans come ready-made, as point clouds of a sensor
-// that delivers whole ones, and, worked on while there is nothing else to do, as they grow.
+// that delivers whole ones, and as what sweeps grow by, which is there sooner. On demand growing
+// scans are worked on, too, while there is nothing else to do.
 class ExtractorProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
@@ -47,7 +51,11 @@ class ExtractorProcess {
 
   void SubscribeToClouds(lcm::LCM* in, const CloudChannels& clouds);
   std::string OnSection(scan_t section);
-  std::string OnPartialSection(partial_scan_t section);
+  // look: what is known of the sweep is to be described, too.
+  std::string OnPartialSection(partial_scan_t section, bool look);
+  std::string OnScanEnd(const scan_end_t& message);
+  bool IsKnownAlready(const StampedScan& scan);
+  void GiveWhenWhole();
   std::string OnCloud(const bot_core::pointcloud2_t& message);
   std::string OnCloudPose(const bot_core::rigid_transform_t& message);
   void Give(StampedScan scan);
@@ -66,6 +74,12 @@ class ExtractorProcess {
   SectionJoiner<scan_t> joiner_;
   SectionJoiner<scan_t> partial_joiner_;
   GrowingScan growing_;
+  std::optional<SweepEnd> sweep_end_;  // whose scan has not been made yet of what it grew by
+  std::optional<StampedScan> last_given_;  // without points; nothing once another sweep has begun
+  // While the last given scan, made of what it grew by, is to come on the channel of scans, too.
+  std::optional<std::chrono::steady_clock::time_point> repetition_until_;
+  std::int64_t num_ahead_ = 0;  // scans that need not be waited for
+  const std::chrono::milliseconds patience_;
   CloudPlacer placer_;
   bool takes_clouds_ = false;
   std::atomic<std::int64_t> num_partial_out_{0};

@@ -13,7 +13,10 @@ struct BusParams {
   // s, when no line came for so long, and for three times the longest gap before, the assembler
   // sends the scan; once more, longer, if the sweep goes on after all; 0.01 .. 3600, idle_time and
   // more = only at the sweep's end
-  double quiet_time = 0.1;
+  double quiet_time = 0.08;
+  // The assembler sends what a sweep grows by at once, so that the extractor has the scan at the
+  // sweep's end; costs the scan's bytes a second time.
+  bool scan_ahead = true;
   double join_patience = 5.0;  // s, wait for missing sections and partners of a scan; 0.1 .. 3600
   void Validate() const;       // throws std::invalid_argument naming field and value
 };

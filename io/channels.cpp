@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
 
-constexpr std::array<std::string Channels::*, 13> kNames = {&Channels::laser,
+constexpr std::array<std::string Channels::*, 15> kNames = {&Channels::laser,
                                                             &Channels::laser_to_local,
                                                             &Channels::scan,
                                                             &Channels::range_image,
@@ -17,6 +17,8 @@ constexpr std::array<std::string Channels::*, 13> kNames = {&Channels::laser,
                                                             &Channels::model,
                                                             &Channels::hypotheses,
                                                             &Channels::detections,
+                                                            &Channels::scan_ahead,
+                                                            &Channels::scan_end,
                                                             &Channels::partial_scan,
                                                             &Channels::partial_range_image,
                                                             &Channels::partial_features,

@@ -15,6 +15,8 @@ struct Channels {
   std::string model = "RIMOD_MODEL";                              // rimod.object_model_t
   std::string hypotheses = "RIMOD_HYPOTHESES";                    // rimod.pose_hypotheses_t
   std::string detections = "RIMOD_DETECTIONS";                    // rimod.detections_t
+  std::string scan_ahead = "RIMOD_SCAN_AHEAD";                    // rimod.partial_scan_t
+  std::string scan_end = "RIMOD_SCAN_END";                        // rimod.scan_end_t
   std::string partial_scan = "RIMOD_SCAN_PARTIAL";                // rimod.partial_scan_t
   std::string partial_range_image = "RIMOD_RANGE_IMAGE_PARTIAL";  // rimod.partial_range_image_t
   std::string partial_features = "RIMOD_FEATURES_PARTIAL";        // rimod.partial_feature_set_t

@@ -234,6 +234,7 @@ Keys BusKeys(BusParams* b) {
       {"bus", "max_waiting_scans", &b->max_waiting_scans, "complete scans that wait, further ones push the oldest out; 1 .. 1000"},
       {"bus", "idle_time", &b->idle_time, "s, the assembler ends a sweep when nothing came for so long; 0.05 .. 3600"},
       {"bus", "quiet_time", &b->quiet_time, "s, the assembler sends a scan when no line came for so long, and again if the sweep goes on; 0.01 .. 3600"},
+      {"bus", "scan_ahead", &b->scan_ahead, "what a sweep grows by is sent at once, so that the extractor has the scan at the sweep's end"},
       {"bus", "join_patience", &b->join_patience, "s, wait for missing parts of a scan; 0.1 .. 3600"},
   };
 }

@@ -14,6 +14,7 @@
 #include "rimod/partial_scan_t.hpp"
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
+#include "rimod/scan_end_t.hpp"
 #include "rimod/scan_t.hpp"
 #include "rimod/status_t.hpp"
 
@@ -188,6 +189,11 @@ template <>
 void WalkShape<partial_scan_t>(ShapeCursor* cursor) {
   cursor->Skip(kInt64 + kInt32);
   WalkShape<scan_t>(cursor);
+}
+
+template <>
+void WalkShape<scan_end_t>(ShapeCursor* cursor) {
+  cursor->Skip(2 * kInt64 + 5 * kInt32 + kPose);
 }
 
 template <>

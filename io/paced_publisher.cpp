@@ -35,12 +35,13 @@ PacedPublisher::~PacedPublisher() {
   thread_.join();
 }
 
-void PacedPublisher::PublishBytes(const std::string& channel, std::vector<std::uint8_t> bytes) {
+void PacedPublisher::PublishBytes(const std::string& channel, std::vector<std::uint8_t> bytes,
+                                  int slowness) {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return stopping_ || queued_bytes_ <= kMaxQueuedBytes; });
   if (stopping_) return;
   queued_bytes_ += bytes.size();
-  queue_.push_back({channel, std::move(bytes)});
+  queue_.push_back({channel, std::move(bytes), slowness});
   lock.unlock();
   changed_.notify_all();
 }
@@ -74,7 +75,7 @@ void PacedPublisher::Send() {
     WaitUntilFree();
     const int status = lcm_->publish(item.channel, item.bytes.data(),
                                      static_cast<unsigned int>(item.bytes.size()));
-    PauseFor(item.bytes.size());
+    PauseAfter(item);
     lock.lock();
     sending_ = false;
     if (status != 0) ++num_failed_;
@@ -95,10 +96,11 @@ void PacedPublisher::WaitUntilFree() {
 }
 
 // Counted from the sending itself: a sender that was late must not catch up.
-void PacedPublisher::PauseFor(std::size_t bytes) {
-  const auto at_rate = std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(static_cast<double>(bytes) / bytes_per_second_));
-  const bool large = bytes > kSectionBytes / 10;
+void PacedPublisher::PauseAfter(const Item& item) {
+  const auto at_rate =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+          static_cast<double>(item.bytes.size()) * item.slowness / bytes_per_second_));
+  const bool large = item.bytes.size() > kSectionBytes / 10;
   const auto for_receivers = large
                                  ? std::min<Clock::duration>(kLatenessFactor * lateness_, kMaxPause)
                                  : Clock::duration{0};

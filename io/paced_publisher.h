@@ -36,7 +36,14 @@ class PacedPublisher {
   void PublishAll(const std::string& channel, const std::vector<Message>& messages) {
     for (const Message& message : messages) Publish(channel, message);
   }
-  void PublishBytes(const std::string& channel, std::vector<std::uint8_t> bytes);
+  // At half the rate: for what nobody waits for, while others send, too.
+  template <typename Message>
+  void PublishAllSlowly(const std::string& channel, const std::vector<Message>& messages) {
+    for (const Message& message : messages)
+      PublishBytes(channel, EncodeMessage(message), /*slowness=*/2);
+  }
+  // The pause after it is slowness times as long as the rate asks for.
+  void PublishBytes(const std::string& channel, std::vector<std::uint8_t> bytes, int slowness = 1);
 
   // Returns when everything given so far has been sent.
   void Flush();
@@ -49,10 +56,11 @@ class PacedPublisher {
   struct Item {
     std::string channel;
     std::vector<std::uint8_t> bytes;
+    int slowness;
   };
   void Send();
   void WaitUntilFree();
-  void PauseFor(std::size_t bytes);
+  void PauseAfter(const Item& item);
 
   lcm::LCM* lcm_;
   double bytes_per_second_;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "io/pose_messages.h"
+
 namespace rimod {
 namespace {
 
@@ -42,6 +44,42 @@ JoinedSweepGrowth SweepGrowthFrom(std::int64_t sweep_utime, int step,
   growth.num_lines = joined.scan->num_lines;
   growth.scan = std::move(joined.scan->scan);
   return {std::move(growth), ""};
+}
+
+scan_end_t ToScanEnd(const Sweep& sweep) {
+  scan_end_t message = {};
+  message.utime = sweep.begin.count();
+  message.utime_end = sweep.end.count();
+  message.num_steps = sweep.rest->step + (sweep.rest->num_lines > 0 ? 1 : 0);
+  message.num_lines = sweep.num_lines;
+  message.num_missing_lines = sweep.num_missing_lines;
+  message.num_points = static_cast<std::int32_t>(sweep.scan.points.size());
+  message.num_no_returns = static_cast<std::int32_t>(sweep.scan.no_return_directions.size());
+  SetPosition(sweep.scan.T_local_sensor.translation(), message.sensor_position);
+  SetOrientation(LevelQuaternionOf(sweep.scan.T_local_sensor), message.sensor_orientation);
+  return message;
+}
+
+SweepEndFromMessage FromMessage(const scan_end_t& message) {
+  const std::optional<Eigen::Isometry3d> T_local_sensor =
+      LevelPoseFrom(message.sensor_position, message.sensor_orientation);
+  if (!T_local_sensor) return {std::nullopt, "sensor pose is not a pose"};
+  if (message.utime_end < message.utime) return {std::nullopt, "scan ends before it begins"};
+  if (message.num_steps < 1) return {std::nullopt, "a sweep of no steps"};
+  if (message.num_lines < 0 || message.num_missing_lines < 0 || message.num_points < 0 ||
+      message.num_no_returns < 0) {
+    return {std::nullopt, "negative number of lines or points"};
+  }
+  SweepEnd end;
+  end.begin = Time(message.utime);
+  end.end = Time(message.utime_end);
+  end.num_steps = message.num_steps;
+  end.num_lines = message.num_lines;
+  end.num_missing_lines = message.num_missing_lines;
+  end.num_points = static_cast<std::size_t>(message.num_points);
+  end.num_no_returns = static_cast<std::size_t>(message.num_no_returns);
+  end.T_local_sensor = *T_local_sensor;
+  return {end, ""};
 }
 
 std::vector<partial_range_image_t> ToPartialSections(const RangeImage& image,

@@ -11,6 +11,7 @@
 #include "rimod/partial_feature_set_t.hpp"
 #include "rimod/partial_range_image_t.hpp"
 #include "rimod/partial_scan_t.hpp"
+#include "rimod/scan_end_t.hpp"
 #include "rimod/sweep.h"
 
 namespace rimod {
@@ -31,6 +32,17 @@ struct JoinedSweepGrowth {
 // negative step.
 JoinedSweepGrowth SweepGrowthFrom(std::int64_t sweep_utime, int step,
                                   const std::vector<scan_t>& sections);
+
+// The end of a complete sweep of whose growths the last was the step before rest (or rest itself,
+// where it has lines). sweep.rest must be there.
+scan_end_t ToScanEnd(const Sweep& sweep);
+
+struct SweepEndFromMessage {
+  std::optional<SweepEnd> end;
+  std::string error;  // the cause; empty when there is an end
+};
+// Negative counts, no steps, an end before the beginning, a pose that is none give an error.
+SweepEndFromMessage FromMessage(const scan_end_t& message);
 
 // Range image and features of what is known of a sweep. known_until: us, the last beam.
 std::vector<partial_range_image_t> ToPartialSections(const RangeImage& image,

@@ -13,6 +13,7 @@ constexpr std::size_t kMaxPoints = 20000000;
 bool GrowingScan::Add(const SweepGrowth& growth) {
   if (growth.step == 0) {
     scan_ = growth.scan;
+    num_lines_ = 0;
   } else {
     if (!scan_) return false;
     const bool is_next = growth.sweep_begin == sweep_begin_ && growth.step == next_step_;
@@ -31,7 +32,14 @@ bool GrowingScan::Add(const SweepGrowth& growth) {
   sweep_begin_ = growth.sweep_begin;
   end_ = growth.end;
   next_step_ = growth.step + 1;
+  num_lines_ += growth.num_lines;
   return true;
+}
+
+bool GrowingScan::IsWhole(const SweepEnd& end) const {
+  return scan_ && sweep_begin_ == end.begin && end_ == end.end && next_step_ == end.num_steps &&
+         num_lines_ == end.num_lines && scan_->points.size() == end.num_points &&
+         scan_->no_return_directions.size() == end.num_no_returns;
 }
 
 }  // namespace rimod

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "rimod/scan.h"
@@ -15,6 +16,10 @@ class GrowingScan {
   // So does a scan that would have more than 20 million points and beams.
   bool Add(const SweepGrowth& growth);
 
+  // True when all growths of the sweep are there and nothing else is: with the end's sensor pose the
+  // scan is that of the sweep.
+  bool IsWhole(const SweepEnd& end) const;
+
   // Nothing before the first step and after giving up.
   const std::optional<Scan>& scan() const { return scan_; }
   // Of the sweep and what is known of it; valid where there is a scan.
@@ -26,6 +31,7 @@ class GrowingScan {
   Time sweep_begin_{0};
   Time end_{0};
   int next_step_ = 0;
+  std::int64_t num_lines_ = 0;
 };
 
 }  // namespace rimod

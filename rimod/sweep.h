@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,16 @@ struct SweepParams {
   void Validate() const;            // throws std::invalid_argument naming field and value
 };
 
+// What a sweep that still goes on has grown by.
+struct SweepGrowth {
+  Time sweep_begin{0};  // first beam of the sweep: that of the Sweep that it becomes
+  int step = 0;         // 0, 1, .. of this sweep
+  Time begin{0};        // first beam of the growth
+  Time end{0};          // last beam of the growth: what is known of the sweep ends here
+  int num_lines = 0;    // of the growth
+  Scan scan;            // of the growth alone; its sensor pose is that of the whole sweep so far
+};
+
 // A sweep that has ended: by reversal or pause of the tilt, by a pause of the lines, because it was
 // too long, because the clock ran backwards, or by Finish().
 struct Sweep {
@@ -57,16 +69,22 @@ struct Sweep {
   double turned_angle = 0.0;  // rad, by which the tilt turned; > 0 downwards
   std::string incomplete_reason;  // empty: the sweep is complete and scan can be used
   bool complete() const { return incomplete_reason.empty(); }
+  // What no growth has told yet, perhaps no lines: growths and this one after the other are the
+  // scan. Nothing where no growth was taken, where they hold more than the sweep (its last lines
+  // belong to the next one) and where the sweep is incomplete.
+  std::optional<SweepGrowth> rest;
 };
 
-// What a sweep that still goes on has grown by.
-struct SweepGrowth {
-  Time sweep_begin{0};  // first beam of the sweep: that of the Sweep that it becomes
-  int step = 0;         // 0, 1, .. of this sweep
-  Time begin{0};        // first beam of the growth
-  Time end{0};          // last beam of the growth: what is known of the sweep ends here
-  int num_lines = 0;    // of the growth
-  Scan scan;            // of the growth alone; its sensor pose is that of the whole sweep so far
+// The end of a sweep, and what all its growths together must be to be its scan.
+struct SweepEnd {
+  Time begin{0};  // first beam
+  Time end{0};    // last beam
+  int num_steps = 0;
+  int num_lines = 0;
+  int num_missing_lines = 0;
+  std::size_t num_points = 0;
+  std::size_t num_no_returns = 0;
+  Eigen::Isometry3d T_local_sensor = Eigen::Isometry3d::Identity();  // of the scan
 };
 
 // What was taken and left out so far, by cause. All of it is counted, nothing of it stops the

@@ -96,6 +96,7 @@ void SweepCollector::FollowTilt(std::size_t index) {
     extreme_ = index;
   }
   if (direction_ * (line.tilt_end - lines_[extreme_].tilt_end) > 0.0) extreme_ = index;
+  ends_.Follow(direction_, line.tilt_begin, line.tilt_end, index);
   const double rest_band = params_.rest_rate * params_.pause_duration;
   if (std::abs(line.tilt_end - lines_[rest_anchor_].tilt_end) > rest_band) rest_anchor_ = index;
 }
@@ -125,7 +126,9 @@ void SweepCollector::EndAt(std::size_t num_lines, const std::string& incomplete_
   if (direction_ == 0) last = first;  // never turned to speak of
   idle_lines_ += static_cast<std::int64_t>(num_lines - (last - first));
   if (last > first) {
+    const double tilt_end = lines_[last - 1].tilt_end;
     ended->push_back(TakeSweep(first, last, incomplete_reason));
+    if (ended->back().complete()) ends_.Learn(direction_, tilt_end, last - 1);
     ++(ended->back().complete() ? complete_sweeps_ : incomplete_sweeps_);
   }
   DropLines(num_lines);
@@ -173,9 +176,24 @@ Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::
     sweep.incomplete_reason = Format("%.0f of %.0f lines are missing", sweep.num_missing_lines,
                                      sweep.num_lines + sweep.num_missing_lines);
   } else {
+    sweep.rest = RestOf(first, last);
     sweep.scan = TakeScan(first, last);
   }
   return sweep;
+}
+
+// Growths begin with the sweep's first line.
+std::optional<SweepGrowth> SweepCollector::RestOf(std::size_t first, std::size_t last) const {
+  if (growth_step_ == 0 || num_grown_ > last) return std::nullopt;
+  SweepGrowth rest;
+  rest.sweep_begin = lines_[first].begin;
+  rest.step = growth_step_;
+  rest.begin = lines_[std::min(num_grown_, last - 1)].begin;
+  rest.end = lines_[last - 1].end;
+  rest.num_lines = static_cast<int>(last - num_grown_);
+  if (num_grown_ < last) rest.scan = CopyScan(num_grown_, last);
+  rest.scan.T_local_sensor = SensorPose(first, last);
+  return rest;
 }
 
 Scan SweepCollector::TakeScan(std::size_t first, std::size_t last) {
@@ -242,6 +260,7 @@ void SweepCollector::DropLines(std::size_t num_lines) {
   rest_anchor_ = 0;
   num_grown_ = 0;
   growth_step_ = 0;
+  ends_.Begin();
   for (std::size_t i = 0; i < lines_.size(); ++i) FollowTilt(i);
 }
 

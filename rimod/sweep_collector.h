@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "rimod/known_ends.h"
 #include "rimod/line_placer.h"
 #include "rimod/sweep.h"
 
@@ -29,6 +30,11 @@ class SweepCollector {
   std::optional<SweepGrowth> TakeGrowth(double min_duration);
 
   bool empty() const { return lines_.empty(); }
+  // True when the newest line is the first one of its sweep to reach the tilt at which the last
+  // sweeps of its direction ended.
+  bool reached_known_end() const {
+    return !lines_.empty() && ends_.ReachedWith(lines_.size() - 1);
+  }
   // Beginning of the newest line, nothing when there is none in the sweep at hand.
   std::optional<Time> newest() const;
 
@@ -55,6 +61,7 @@ class SweepCollector {
              std::vector<Sweep>* ended);
   // Of the lines [first, last); may leave the lists of points empty.
   Sweep TakeSweep(std::size_t first, std::size_t last, const std::string& reason);
+  std::optional<SweepGrowth> RestOf(std::size_t first, std::size_t last) const;
   Scan TakeScan(std::size_t first, std::size_t last);
   Scan CopyScan(std::size_t first, std::size_t last) const;
   Eigen::Isometry3d SensorPose(std::size_t first, std::size_t last) const;
@@ -71,6 +78,8 @@ class SweepCollector {
 
   std::size_t num_grown_ = 0;  // lines, from the first, that growths have told
   int growth_step_ = 0;        // of the next growth
+
+  KnownEnds ends_;
 
   std::int64_t idle_lines_ = 0;
   std::int64_t missing_lines_ = 0;

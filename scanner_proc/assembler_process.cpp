@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "io/laser_messages.h"
@@ -16,9 +17,17 @@ namespace {
 // Every line counts: a minute of a fast laser may wait.
 constexpr int kQueueCapacity = 10000;
 
+// Of a sweep, s: what is sent at once, about a section. What is left at the sweep's end is less.
+constexpr double kAheadPeriod = 0.25;
+
 StampedScan ToStampedScan(const Sweep& sweep) {
   return {sweep.begin.count(), sweep.end.count(), sweep.num_lines, sweep.num_missing_lines,
           sweep.scan};
+}
+
+double GrowthPeriod(const Configuration& configuration, bool tell_growth) {
+  if (tell_growth) return configuration.pipeline.early.period;
+  return configuration.bus.scan_ahead ? kAheadPeriod : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -26,13 +35,17 @@ StampedScan ToStampedScan(const Sweep& sweep) {
 AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                                    const Configuration& configuration, bool tell_growth)
     : scan_channel_(channels.scan),
-      partial_scan_channel_(channels.partial_scan),
-      tell_growth_(tell_growth),
-      growth_period_(configuration.pipeline.early.period),
+      scan_ahead_channel_(channels.scan_ahead),
+      scan_end_channel_(channels.scan_end),
+      scan_ahead_(configuration.bus.scan_ahead),
+      growth_channel_(tell_growth ? channels.partial_scan : channels.scan_ahead),
+      growth_period_(GrowthPeriod(configuration, tell_growth)),
       idle_time_(configuration.bus.idle_time),
       quiet_time_(configuration.bus.quiet_time),
       assembler_(configuration.pipeline.sweep),
       last_input_(Clock::now()),
+      last_line_(last_input_),
+      last_idle_(last_input_),
       status_(out, channels.status, "rimod-assembler"),
       publisher_(out, configuration.bus) {
   subscriptions_.push_back(SubscribeTo<bot_core::planar_lidar_t>(
@@ -46,49 +59,61 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
 std::string AssemblerProcess::OnLine(const bot_core::planar_lidar_t& message) {
   LaserLineFromMessage line = FromMessage(message);
   if (!line.line) return line.error;
-  NoteInput();
-  const std::vector<Sweep> sweeps = assembler_.AddLine(std::move(*line.line));
-  assembly_time_ += Clock::now() - last_input_;
-  PublishEnded(sweeps);
-  PublishGrowth();
+  NoteLine();
+  Take([&] { return assembler_.AddLine(std::move(*line.line)); });
   return "";
 }
 
 std::string AssemblerProcess::OnPose(const bot_core::rigid_transform_t& message) {
   const TimedPoseFromMessage pose = FromMessage(message);
   if (!pose.pose) return pose.error;
-  NoteInput();
-  const std::vector<Sweep> sweeps = assembler_.AddPose(*pose.pose);
-  assembly_time_ += Clock::now() - last_input_;
-  PublishEnded(sweeps);
-  PublishGrowth();
+  Take([&] { return assembler_.AddPose(*pose.pose); });
   return "";
 }
 
-void AssemblerProcess::NoteInput() {
+template <typename Input>
+void AssemblerProcess::Take(Input input) {
+  last_input_ = Clock::now();
+  const std::vector<Sweep> sweeps = input();
+  assembly_time_ += Clock::now() - last_input_;
+  PublishEnded(sweeps);
+  PublishGrowth(growth_channel_, growth_period_);
+  if (known_end_told_ || !assembler_.reached_known_end()) return;
+  known_end_told_ = true;
+  PublishUnended();
+}
+
+void AssemblerProcess::NoteLine() {
   const auto now = Clock::now();
   longest_gap_ =
-      assembler_.collecting() ? std::max(longest_gap_, now - last_input_) : Clock::duration{0};
-  last_input_ = now;
-  looked_ = false;
+      assembler_.collecting() ? std::max(longest_gap_, now - last_line_) : Clock::duration{0};
+  last_line_ = now;
+  unheard_ = Clock::duration{0};
 }
 
 // A machine that delivers lines late may pause in the midst of a sweep: a gap much longer than any
-// before is needed.
+// before is needed. The last line waits for the pose after it.
 bool AssemblerProcess::LinesStopped() const {
   constexpr int kLongerThanAnyGap = 3;
-  const auto quiet = Clock::now() - last_input_;
-  return quiet > quiet_time_ && quiet > kLongerThanAnyGap * longest_gap_;
+  const auto now = Clock::now();
+  const auto quiet = [&](Clock::time_point last) {
+    return now - last - unheard_ > quiet_time_ &&
+           now - last - unheard_ > kLongerThanAnyGap * longest_gap_;
+  };
+  return quiet(assembler_.has_waiting_lines() ? last_input_ : last_line_);
 }
 
 void AssemblerProcess::OnIdle() {
-  if (assembler_.collecting() && Clock::now() - last_input_ > idle_time_) {
-    const auto begin = Clock::now();
+  constexpr auto kLate = std::chrono::milliseconds(30);
+  const auto begin = Clock::now();
+  if (begin - last_idle_ > kLate) unheard_ += begin - std::max(last_idle_, last_line_);
+  last_idle_ = begin;
+  if (assembler_.collecting() && begin - last_input_ > idle_time_) {
     const std::vector<Sweep> sweeps = assembler_.Finish();
     assembly_time_ += Clock::now() - begin;
     PublishEnded(sweeps);
-  } else if (assembler_.collecting() && !looked_ && LinesStopped()) {
-    looked_ = true;
+  } else if (assembler_.collecting() && LinesStopped() &&
+             assembler_.counters().lines != num_lines_seen_) {
     PublishUnended();
   }
   ReportCounters();
@@ -110,10 +135,13 @@ void AssemblerProcess::PublishEnded(const std::vector<Sweep>& sweeps) {
   if (sweeps.empty()) return;
   assembly_time_ = Clock::duration{0};
   longest_gap_ = Clock::duration{0};
+  known_end_told_ = false;
 }
 
 // The scan that it would be if nothing more came.
 void AssemblerProcess::PublishUnended() {
+  num_lines_seen_ = assembler_.counters().lines;
+  if (scan_ahead_) PublishGrowth(scan_ahead_channel_, 0.0);
   SweepAssembler ended = assembler_;
   for (const Sweep& sweep : ended.Finish())
     if (sweep.complete()) PublishScan(sweep);
@@ -124,7 +152,11 @@ void AssemblerProcess::PublishScan(const Sweep& sweep) {
       sent_->num_lines == sweep.num_lines)
     return;
   sent_ = SentScan{sweep.begin, sweep.end, sweep.num_lines};
-  publisher_.PublishAll(scan_channel_, ToSections(ToStampedScan(sweep)));
+  if (PublishAhead(sweep)) {
+    publisher_.PublishAllSlowly(scan_channel_, ToSections(ToStampedScan(sweep)));
+  } else {
+    publisher_.PublishAll(scan_channel_, ToSections(ToStampedScan(sweep)));
+  }
   status_.CountOut();
   const std::chrono::duration<double, std::milli> elapsed = assembly_time_;
   status_.AddStageTimes({{"assembly", elapsed.count()}});
@@ -132,10 +164,18 @@ void AssemblerProcess::PublishScan(const Sweep& sweep) {
                sweep.scan.points.size());
 }
 
-void AssemblerProcess::PublishGrowth() {
-  if (!tell_growth_) return;
-  const std::optional<SweepGrowth> growth = assembler_.TakeGrowth(growth_period_);
-  if (growth) publisher_.PublishAll(partial_scan_channel_, ToPartialSections(*growth));
+// What growth has not told yet of the scan, and its end. False where there is no such growth.
+bool AssemblerProcess::PublishAhead(const Sweep& sweep) {
+  if (!scan_ahead_ || !sweep.rest) return false;
+  if (sweep.rest->num_lines > 0)
+    publisher_.PublishAll(scan_ahead_channel_, ToPartialSections(*sweep.rest));
+  publisher_.Publish(scan_end_channel_, ToScanEnd(sweep));
+  return true;
+}
+
+void AssemblerProcess::PublishGrowth(const std::string& channel, double min_duration) {
+  const std::optional<SweepGrowth> growth = assembler_.TakeGrowth(min_duration);
+  if (growth) publisher_.PublishAll(channel, ToPartialSections(*growth));
 }
 
 void AssemblerProcess::ReportCounters() {

@@ -18,8 +18,9 @@
 
 namespace rimod {
 
-// Laser lines and poses in, a scan out at the end of each sweep; on demand also what a sweep has
-// grown by, every early.period of it.
+// Laser lines and poses in, a scan out at the end of each sweep. Before that what the sweep has
+// grown by, so that the extractor has nearly all of the scan when the sweep ends; on demand every
+// early.period, to be looked at early.
 class AssemblerProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process.
@@ -27,18 +28,22 @@ class AssemblerProcess {
                    const Configuration& configuration, bool tell_growth = false);
 
   // To be called many times a second: sends the scan of a sweep as soon as its lines stop, ends the
-  // sweep when nothing comes any more, reports.
+  // sweep when nothing comes any more, reports. Where it is called late the machine is busy, and the
+  // time in between does not count as silence.
   void OnIdle();
 
  private:
   std::string OnLine(const bot_core::planar_lidar_t& message);
   std::string OnPose(const bot_core::rigid_transform_t& message);
-  void NoteInput();
+  template <typename Input>
+  void Take(Input input);
+  void NoteLine();
   bool LinesStopped() const;
   void PublishEnded(const std::vector<Sweep>& sweeps);
   void PublishUnended();
   void PublishScan(const Sweep& sweep);
-  void PublishGrowth();
+  bool PublishAhead(const Sweep& sweep);
+  void PublishGrowth(const std::string& channel, double min_duration);
   void ReportCounters();
 
   using Clock = std::chrono::steady_clock;
@@ -47,17 +52,19 @@ class AssemblerProcess {
     int num_lines = 0;
   };
 
-  const std::string scan_channel_;
-  const std::string partial_scan_channel_;
-  const bool tell_growth_;
-  const double growth_period_;  // s
+  const std::string scan_channel_, scan_ahead_channel_, scan_end_channel_;
+  const bool scan_ahead_;  // growth is sent ahead of the scan
+  const std::string growth_channel_;
+  const double growth_period_;  // s, infinite where growth is not sent
   const std::chrono::duration<double> idle_time_, quiet_time_;
   SweepAssembler assembler_;
   Clock::duration assembly_time_{0};  // spent on the sweep at hand
-  Clock::time_point last_input_;
-  Clock::duration longest_gap_{0};  // between inputs of the sweep at hand
-  bool looked_ = false;             // at the sweep at hand since the last input
-  std::optional<SentScan> sent_;    // of the sweep at hand, before its end
+  Clock::time_point last_input_, last_line_, last_idle_;
+  Clock::duration longest_gap_{0};   // between lines of the sweep at hand
+  Clock::duration unheard_{0};       // since the last line, while this process did not run
+  std::int64_t num_lines_seen_ = 0;  // when the sweep at hand was last looked at
+  bool known_end_told_ = false;      // of the sweep at hand
+  std::optional<SentScan> sent_;     // of the sweep at hand, before its end
   StatusReporter status_;
   PacedPublisher publisher_;
   std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
