@@ -74,7 +74,7 @@ class ExtractorProcess {
   SectionJoiner<scan_t> joiner_;
   SectionJoiner<scan_t> partial_joiner_;
   GrowingScan growing_;
-  std::optional<SweepEnd> sweep_end_;  // whose scan has not been made yet of what it grew by
+  std::optional<SweepEnd> sweep_end_;      // whose scan has not been made yet of what it grew by
   std::optional<StampedScan> last_given_;  // without points; nothing once another sweep has begun
   // While the last given scan, made of what it grew by, is to come on the channel of scans, too.
   std::optional<std::chrono::steady_clock::time_point> repetition_until_;

@@ -97,9 +97,8 @@ void PacedPublisher::WaitUntilFree() {
 
 // Counted from the sending itself: a sender that was late must not catch up.
 void PacedPublisher::PauseAfter(const Item& item) {
-  const auto at_rate =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
-          static_cast<double>(item.bytes.size()) * item.slowness / bytes_per_second_));
+  const auto at_rate = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+      static_cast<double>(item.bytes.size()) * item.slowness / bytes_per_second_));
   const bool large = item.bytes.size() > kSectionBytes / 10;
   const auto for_receivers = large
                                  ? std::min<Clock::duration>(kLatenessFactor * lateness_, kMaxPause)

@@ -16,8 +16,8 @@ class GrowingScan {
   // So does a scan that would have more than 20 million points and beams.
   bool Add(const SweepGrowth& growth);
 
-  // True when all growths of the sweep are there and nothing else is: with the end's sensor pose the
-  // scan is that of the sweep.
+  // True when all growths of the sweep are there and nothing else is: with the end's sensor pose
+  // the scan is that of the sweep.
   bool IsWhole(const SweepEnd& end) const;
 
   // Nothing before the first step and after giving up.

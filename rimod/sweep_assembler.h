@@ -39,8 +39,8 @@ class SweepAssembler {
     return collector_.TakeGrowth(min_duration);
   }
 
-  // True after an input that took the sweep at hand to where the last sweeps of its direction ended:
-  // the same tilt each time. It probably ends here, too.
+  // True after an input that took the sweep at hand to where the last sweeps of its direction
+  // ended: the same tilt each time. It probably ends here, too.
   bool reached_known_end() const { return collector_.reached_known_end(); }
 
   // True while lines wait for a pose after them.

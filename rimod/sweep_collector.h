@@ -32,9 +32,7 @@ class SweepCollector {
   bool empty() const { return lines_.empty(); }
   // True when the newest line is the first one of its sweep to reach the tilt at which the last
   // sweeps of its direction ended.
-  bool reached_known_end() const {
-    return !lines_.empty() && ends_.ReachedWith(lines_.size() - 1);
-  }
+  bool reached_known_end() const { return !lines_.empty() && ends_.ReachedWith(lines_.size() - 1); }
   // Beginning of the newest line, nothing when there is none in the sweep at hand.
   std::optional<Time> newest() const;
 

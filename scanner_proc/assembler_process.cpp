@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -41,11 +40,11 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
       growth_channel_(tell_growth ? channels.partial_scan : channels.scan_ahead),
       growth_period_(GrowthPeriod(configuration, tell_growth)),
       idle_time_(configuration.bus.idle_time),
-      quiet_time_(configuration.bus.quiet_time),
       assembler_(configuration.pipeline.sweep),
       last_input_(Clock::now()),
-      last_line_(last_input_),
-      last_idle_(last_input_),
+      silence_(std::chrono::duration_cast<Clock::duration>(
+                   std::chrono::duration<double>(configuration.bus.quiet_time)),
+               last_input_),
       status_(out, channels.status, "rimod-assembler"),
       publisher_(out, configuration.bus) {
   subscriptions_.push_back(SubscribeTo<bot_core::planar_lidar_t>(
@@ -59,7 +58,7 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
 std::string AssemblerProcess::OnLine(const bot_core::planar_lidar_t& message) {
   LaserLineFromMessage line = FromMessage(message);
   if (!line.line) return line.error;
-  NoteLine();
+  silence_.OnLine(Clock::now(), !assembler_.collecting());
   Take([&] { return assembler_.AddLine(std::move(*line.line)); });
   return "";
 }
@@ -74,6 +73,7 @@ std::string AssemblerProcess::OnPose(const bot_core::rigid_transform_t& message)
 template <typename Input>
 void AssemblerProcess::Take(Input input) {
   last_input_ = Clock::now();
+  silence_.OnInput(last_input_);
   const std::vector<Sweep> sweeps = input();
   assembly_time_ += Clock::now() - last_input_;
   PublishEnded(sweeps);
@@ -83,37 +83,15 @@ void AssemblerProcess::Take(Input input) {
   PublishUnended();
 }
 
-void AssemblerProcess::NoteLine() {
-  const auto now = Clock::now();
-  longest_gap_ =
-      assembler_.collecting() ? std::max(longest_gap_, now - last_line_) : Clock::duration{0};
-  last_line_ = now;
-  unheard_ = Clock::duration{0};
-}
-
-// A machine that delivers lines late may pause in the midst of a sweep: a gap much longer than any
-// before is needed. The last line waits for the pose after it.
-bool AssemblerProcess::LinesStopped() const {
-  constexpr int kLongerThanAnyGap = 3;
-  const auto now = Clock::now();
-  const auto quiet = [&](Clock::time_point last) {
-    return now - last - unheard_ > quiet_time_ &&
-           now - last - unheard_ > kLongerThanAnyGap * longest_gap_;
-  };
-  return quiet(assembler_.has_waiting_lines() ? last_input_ : last_line_);
-}
-
 void AssemblerProcess::OnIdle() {
-  constexpr auto kLate = std::chrono::milliseconds(30);
   const auto begin = Clock::now();
-  if (begin - last_idle_ > kLate) unheard_ += begin - std::max(last_idle_, last_line_);
-  last_idle_ = begin;
+  silence_.Look(begin);
   if (assembler_.collecting() && begin - last_input_ > idle_time_) {
     const std::vector<Sweep> sweeps = assembler_.Finish();
     assembly_time_ += Clock::now() - begin;
     PublishEnded(sweeps);
-  } else if (assembler_.collecting() && LinesStopped() &&
-             assembler_.counters().lines != num_lines_seen_) {
+  } else if (assembler_.collecting() && assembler_.counters().lines != num_lines_seen_ &&
+             silence_.LinesStopped(assembler_.has_waiting_lines())) {
     PublishUnended();
   }
   ReportCounters();
@@ -134,7 +112,6 @@ void AssemblerProcess::PublishEnded(const std::vector<Sweep>& sweeps) {
   }
   if (sweeps.empty()) return;
   assembly_time_ = Clock::duration{0};
-  longest_gap_ = Clock::duration{0};
   known_end_told_ = false;
 }
 

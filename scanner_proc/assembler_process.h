@@ -15,6 +15,7 @@
 #include "io/raw_subscription.h"
 #include "io/status_reporter.h"
 #include "rimod/sweep_assembler.h"
+#include "scanner_proc/line_silence.h"
 
 namespace rimod {
 
@@ -28,8 +29,8 @@ class AssemblerProcess {
                    const Configuration& configuration, bool tell_growth = false);
 
   // To be called many times a second: sends the scan of a sweep as soon as its lines stop, ends the
-  // sweep when nothing comes any more, reports. Where it is called late the machine is busy, and the
-  // time in between does not count as silence.
+  // sweep when nothing comes any more, reports. Where it is called late the machine is busy, and
+  // the time in between does not count as silence.
   void OnIdle();
 
  private:
@@ -37,8 +38,6 @@ class AssemblerProcess {
   std::string OnPose(const bot_core::rigid_transform_t& message);
   template <typename Input>
   void Take(Input input);
-  void NoteLine();
-  bool LinesStopped() const;
   void PublishEnded(const std::vector<Sweep>& sweeps);
   void PublishUnended();
   void PublishScan(const Sweep& sweep);
@@ -56,12 +55,11 @@ class AssemblerProcess {
   const bool scan_ahead_;  // growth is sent ahead of the scan
   const std::string growth_channel_;
   const double growth_period_;  // s, infinite where growth is not sent
-  const std::chrono::duration<double> idle_time_, quiet_time_;
+  const std::chrono::duration<double> idle_time_;
   SweepAssembler assembler_;
   Clock::duration assembly_time_{0};  // spent on the sweep at hand
-  Clock::time_point last_input_, last_line_, last_idle_;
-  Clock::duration longest_gap_{0};   // between lines of the sweep at hand
-  Clock::duration unheard_{0};       // since the last line, while this process did not run
+  Clock::time_point last_input_;
+  LineSilence silence_;
   std::int64_t num_lines_seen_ = 0;  // when the sweep at hand was last looked at
   bool known_end_told_ = false;      // of the sweep at hand
   std::optional<SentScan> sent_;     // of the sweep at hand, before its end

@@ -51,6 +51,18 @@ TEST_F(PacedPublisherTest, ABurstTakesAsLongAsTheRateSaysAndNotMuchLonger) {
   EXPECT_LE(seconds, 0.6);
 }
 
+TEST_F(PacedPublisherTest, SlowlyTakesTwiceAsLong) {
+  PacedPublisher publisher(&lcm_, params_);
+  const auto begin = Clock::now();
+  for (int i = 0; i < 10; ++i)
+    publisher.PublishBytes("CHANNEL", std::vector<std::uint8_t>(100000), /*slowness=*/2);
+  publisher.Flush();
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  EXPECT_GE(seconds, 0.175);  // 0.9 MB at 5 MB/s after the first 0.1 MB
+  HandleAll();
+  EXPECT_EQ(received_.size(), 10u);
+}
+
 TEST_F(PacedPublisherTest, ASingleMessageGoesOutAtOnce) {
   PacedPublisher publisher(&lcm_, params_);
   const auto begin = Clock::now();

@@ -55,6 +55,52 @@ TEST(PartialMessagesTest, WrongGrowthIsNamed) {
   EXPECT_NE(SweepGrowthFrom(1000, 3, {}).error, "");
 }
 
+Sweep EndedSweep(int num_lines_of_rest) {
+  Sweep sweep;
+  sweep.begin = Time(1000);
+  sweep.end = Time(5000);
+  sweep.num_lines = 361;
+  sweep.num_missing_lines = 2;
+  sweep.scan = RandomValues(2).AScan(300, 20);
+  sweep.rest = Growth(10);
+  sweep.rest->step = 4;
+  sweep.rest->num_lines = num_lines_of_rest;
+  return sweep;
+}
+
+TEST(PartialMessagesTest, TheEndOfASweepTellsWhatAllGrowthsAre) {
+  const Sweep sweep = EndedSweep(3);
+  const SweepEndFromMessage back = FromMessage(ToScanEnd(sweep));
+  ASSERT_TRUE(back.end) << back.error;
+  EXPECT_EQ(back.end->begin, sweep.begin);
+  EXPECT_EQ(back.end->end, sweep.end);
+  EXPECT_EQ(back.end->num_steps, 5);
+  EXPECT_EQ(back.end->num_lines, sweep.num_lines);
+  EXPECT_EQ(back.end->num_missing_lines, sweep.num_missing_lines);
+  EXPECT_EQ(back.end->num_points, 300u);
+  EXPECT_EQ(back.end->num_no_returns, 20u);
+  EXPECT_EQ(back.end->T_local_sensor.matrix(), sweep.scan.T_local_sensor.matrix());
+  EXPECT_EQ(ToScanEnd(EndedSweep(0)).num_steps, 4) << "the rest is no step when it is empty";
+}
+
+TEST(PartialMessagesTest, WrongEndsAreNamed) {
+  const scan_end_t good = ToScanEnd(EndedSweep(3));
+  const auto error = [&](auto change) {
+    scan_end_t bad = good;
+    change(&bad);
+    return FromMessage(bad).error;
+  };
+  EXPECT_EQ(error([](scan_end_t* m) { m->utime_end = 999; }), "scan ends before it begins");
+  EXPECT_EQ(error([](scan_end_t* m) { m->num_steps = 0; }), "a sweep of no steps");
+  EXPECT_EQ(error([](scan_end_t* m) { m->sensor_orientation[0] = 5.0; }),
+            "sensor pose is not a pose");
+  for (std::int32_t scan_end_t::*const count :
+       {&scan_end_t::num_lines, &scan_end_t::num_missing_lines, &scan_end_t::num_points,
+        &scan_end_t::num_no_returns}) {
+    EXPECT_EQ(error([&](scan_end_t* m) { m->*count = -1; }), "negative number of lines or points");
+  }
+}
+
 TEST(PartialMessagesTest, ImagesAndFeaturesAreThoseOfScansNamedByTheLastBeam) {
   const RangeImage image = RandomValues(1).AnImage(400, 200);
   const auto images = ToPartialSections(image, 1000, 3000);

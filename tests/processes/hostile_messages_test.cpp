@@ -247,6 +247,8 @@ TEST_F(HostileMessagesTest, ExtractorOfClouds) {
 TEST_F(HostileMessagesTest, PartialScans) {
   Start("rimod-extractor");
   SendWrongBytes<partial_scan_t>("RIMOD_SCAN_PARTIAL");
+  SendWrongBytes<partial_scan_t>("RIMOD_SCAN_AHEAD");
+  SendWrongBytes<scan_end_t>("RIMOD_SCAN_END");
   const Expected expected(1'000'000'000);
   SweepGrowth growth;
   growth.sweep_begin = growth.begin = growth.end = Time(expected.scan.utime);

@@ -121,6 +121,47 @@ TEST(SweepGrowthTest, ARestingTiltGrowsNothing) {
   }
 }
 
+// What the end of a sweep says of it.
+SweepEnd EndOf(const Sweep& sweep) {
+  SweepEnd end;
+  end.begin = sweep.begin;
+  end.end = sweep.end;
+  end.num_steps = sweep.rest->step + (sweep.rest->num_lines > 0 ? 1 : 0);
+  end.num_lines = sweep.num_lines;
+  end.num_points = sweep.scan.points.size();
+  end.num_no_returns = sweep.scan.no_return_directions.size();
+  return end;
+}
+
+TEST(SweepGrowthTest, GrowthsAndTheRestAreTheSweep) {
+  const Recorded recorded = Record(800, 0.3);
+  std::size_t num_whole = 0;
+  for (const Sweep& sweep : recorded.sweeps) {
+    if (!sweep.complete()) continue;
+    ASSERT_TRUE(sweep.rest);
+    const SweepEnd end = EndOf(sweep);
+    GrowingScan growing;
+    for (const SweepGrowth& growth : recorded.growths) {
+      if (growth.sweep_begin != sweep.begin) continue;
+      ASSERT_TRUE(growing.Add(growth));
+    }
+    if (sweep.rest->num_lines > 0) {
+      EXPECT_FALSE(growing.IsWhole(end));
+      ASSERT_TRUE(growing.Add(*sweep.rest));
+    }
+    EXPECT_TRUE(growing.IsWhole(end));
+    EXPECT_EQ(growing.scan()->points, sweep.scan.points);
+    EXPECT_EQ(growing.scan()->no_return_directions, sweep.scan.no_return_directions);
+    EXPECT_EQ(growing.scan()->T_local_sensor.matrix(), sweep.scan.T_local_sensor.matrix());
+    ++num_whole;
+  }
+  EXPECT_GE(num_whole, 5u);
+}
+
+TEST(SweepGrowthTest, WhereNoGrowthWasTakenThereIsNoRest) {
+  for (const Sweep& sweep : Record(800, 0.0).sweeps) EXPECT_FALSE(sweep.rest);
+}
+
 SweepGrowth Step(std::int64_t sweep, int step, int num_points) {
   SweepGrowth growth;
   growth.sweep_begin = Time(sweep);
@@ -151,6 +192,32 @@ TEST(GrowingScanTest, StepsOfAnotherSweepAndRepeatedOnesAreNoGrowth) {
   EXPECT_TRUE(growing.Add(Step(7, 0, 10)));
   EXPECT_TRUE(growing.Add(Step(7, 1, 10)));
   EXPECT_FALSE(growing.Add(Step(7, 1, 10)));
+}
+
+TEST(GrowingScanTest, IsWholeOnlyWhenEverythingIsAsTheEndSays) {
+  GrowingScan growing;
+  growing.Add(Step(7, 0, 10));
+  growing.Add(Step(7, 1, 5));
+  SweepEnd end;
+  end.begin = Time(7);
+  end.end = Time(8);
+  end.num_steps = 2;
+  end.num_points = 15;
+  end.num_no_returns = 2;
+  EXPECT_TRUE(growing.IsWhole(end));
+  const auto differs = [&](auto change) {
+    SweepEnd other = end;
+    change(&other);
+    return !growing.IsWhole(other);
+  };
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->begin = Time(6); }));
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->end = Time(9); }));
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->num_steps = 3; }));
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->num_lines = 1; }));
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->num_points = 14; }));
+  EXPECT_TRUE(differs([](SweepEnd* e) { e->num_no_returns = 3; }));
+  growing.Add(Step(7, 3, 5));
+  EXPECT_FALSE(growing.IsWhole(end)) << "a step is missing";
 }
 
 TEST(GrowingScanTest, TheSensorsPoseIsTheLastOne) {

@@ -262,6 +262,27 @@ TEST(SweepAssemblerTest, RestOfTheTiltEndsASweepWithoutWaitingForMore) {
   EXPECT_EQ(assembler.counters().lines_without_pose, 1);
 }
 
+// Down and up between the same tilts, again and again.
+TEST(SweepAssemblerTest, FromTheFourthSweepOfADirectionOnTheLastLineReachesAKnownEnd) {
+  constexpr int kLinesASweep = 100;
+  const auto nodding = [](double seconds) {
+    const double lines = seconds / (kLinePeriod * 1e-6);
+    const double phase = std::fmod(lines, 2.0 * kLinesASweep);
+    return Tilted(0.25 * kDegree * std::min(phase, 2.0 * kLinesASweep - phase));
+  };
+  const Input input = Record(10 * kLinesASweep, nodding);
+  SweepAssembler assembler{SweepParams()};
+  std::vector<std::size_t> reached;
+  for (std::size_t i = 0; i < input.poses.size(); ++i) {
+    assembler.AddPose(input.poses[i]);
+    if (assembler.reached_known_end()) reached.push_back(i);
+    if (i == input.lines.size()) break;
+    assembler.AddLine(input.lines[i]);
+  }
+  // The pose with which a sweep's last line is placed.
+  EXPECT_EQ(reached, (std::vector<std::size_t>{700, 800, 900, 1000}));
+}
+
 TEST(SweepAssemblerTest, PauseInTheLinesEndsASweep) {
   Input input = Record(800, SteadyTilt(-60 * kDegree, 160 * kDegree));
   input.lines.erase(input.lines.begin() + 400, input.lines.begin() + 420);  // 0.56 s

@@ -112,6 +112,13 @@ inline partial_scan_t SampleMessage() {
   return ToPartialSections(growth)[0];
 }
 template <>
+inline scan_end_t SampleMessage() {
+  Sweep sweep;
+  sweep.rest.emplace();
+  sweep.rest->step = 2;
+  return ToScanEnd(sweep);
+}
+template <>
 inline partial_range_image_t SampleMessage() {
   return ToPartialSections(RandomValues(1).AnImage(5, 4), 3, 4)[0];
 }

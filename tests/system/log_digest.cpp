@@ -23,6 +23,7 @@
 #include "rimod/partial_scan_t.hpp"
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
+#include "rimod/scan_end_t.hpp"
 #include "rimod/scan_t.hpp"
 
 namespace rimod {
@@ -65,8 +66,10 @@ void PrintDigest(const LogEvent& event) {
     PrintSection<range_image_t>(event);
   } else if (event.channel == channels.features) {
     PrintSection<feature_set_t>(event);
-  } else if (event.channel == channels.partial_scan) {
+  } else if (event.channel == channels.scan_ahead || event.channel == channels.partial_scan) {
     PrintPartial<partial_scan_t>(event);
+  } else if (event.channel == channels.scan_end) {
+    PrintMessage(event, Decode<scan_end_t>(event), 0, 1);
   } else if (event.channel == channels.partial_range_image) {
     PrintPartial<partial_range_image_t>(event);
   } else if (event.channel == channels.partial_features) {

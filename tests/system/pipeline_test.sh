@@ -103,7 +103,7 @@ complete() {
   echo "every section was recorded"
 }
 outputs="SCAN RANGE_IMAGE FEATURES HYPOTHESES DETECTIONS"
-complete "$work/all" "$outputs"
+complete "$work/all" "$outputs SCAN_AHEAD SCAN_END"
 
 "$bin/rimod-detect" --models "$models" "$log" >"$work/offline" 2>"$work/rimod-detect.err" ||
   fail "rimod-detect"
@@ -123,6 +123,8 @@ replay() {
 }
 replay rimod-assembler 'LASER|LASER_TO_LOCAL' RIMOD_SCAN
 replay rimod-extractor 'RIMOD_SCAN' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
+replay rimod-extractor 'RIMOD_SCAN_AHEAD|RIMOD_SCAN_END' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
+replay rimod-extractor 'RIMOD_SCAN.*' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
 replay rimod-matcher 'RIMOD_RANGE_IMAGE|RIMOD_FEATURES' 'RIMOD_HYPOTHESES RIMOD_DETECTIONS'
 
 echo "== with growing scans"
