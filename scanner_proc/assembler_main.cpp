@@ -11,10 +11,10 @@ int main(int argc, char** argv) {
       "Joins the lines of a tilting 2D laser into 3D scans.\n"
       "Reads bot_core.planar_lidar_t on LASER (one line each) and bot_core.rigid_transform_t on\n"
       "LASER_TO_LOCAL (where the laser is); sends rimod.scan_t on RIMOD_SCAN at the end of each "
-      "sweep\nof the tilt, and rimod.status_t on RIMOD_STATUS once a second. With --early also "
-      "what "
-      "each sweep\nhas grown by, rimod.partial_scan_t on RIMOD_SCAN_PARTIAL, for detections before "
-      "its end.",
+      "sweep\nof the tilt, its points on RIMOD_SCAN_AHEAD as they come and RIMOD_SCAN_END at its "
+      "end, and\nrimod.status_t on RIMOD_STATUS once a second. With --early the growing scans go "
+      "out "
+      "on\nRIMOD_SCAN_PARTIAL, to be searched for detections before the sweep's end.",
       "rimod-assembler");
   rimod::CommonOptions common;
   rimod::BusOptions bus;
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
                                   early);
   constexpr auto kIdlePeriod =
-      std::chrono::milliseconds(10);  // the end of a sweep is seen late by that
+      std::chrono::milliseconds(5);  // the end of a sweep is seen late by that
   const bool stopped = rimod::RunBus(
       lcm, signals.stop(), [&process] { process.OnIdle(); }, kIdlePeriod);
   return stopped ? 0 : 1;

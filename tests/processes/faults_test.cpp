@@ -310,7 +310,7 @@ TEST_F(FaultsTest, TheAssemblersScanIsThatOfTheLinesThatArrived) {
   if (!Loss::Possible()) GTEST_SKIP() << "no nft, or the kernel has no packet filter";
   StartAndWait("rimod-assembler");
   const SweepParams params = DefaultConfiguration(Method::kDefault).pipeline.sweep;
-  Loss loss(45);
+  Loss loss(31);
   ASSERT_TRUE(loss.good());
   const TiltingLaser laser = TiltInFrontOf(SmallRoom(), Time(1'000'000'000), 60);
   for (std::size_t i = 0; i < laser.poses.size(); ++i) {
