@@ -97,9 +97,9 @@ TEST(ChannelsTest, NamesMayBeSwapped) {
   EXPECT_EQ(channels.laser, "RIMOD_SCAN");
 }
 
-TEST(ChannelsTest, ThereAreThirteenChannelsAllDifferent) {
+TEST(ChannelsTest, ThereAreFifteenChannelsAllDifferent) {
   std::vector<std::string> names = DefaultChannelNames();
-  EXPECT_EQ(names.size(), 13u);
+  EXPECT_EQ(names.size(), 15u);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());
 }
