@@ -116,6 +116,7 @@ replay() {
   local name=$1 inputs=$2 outputs=$3
   echo "== $name alone"
   awaited=${outputs##* }
+  rm -f "$work/$name"
   run "$work/$name" "$name" -- --speed 2 --regexp "^($inputs)\$" "$work/all"
   messages "$work/all" $outputs >"$work/before"
   messages "$work/$name" $outputs >"$work/again"
