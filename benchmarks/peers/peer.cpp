@@ -20,7 +20,8 @@ Times Now() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
   const std::chrono::duration<double, std::milli> wall =
       std::chrono::steady_clock::now().time_since_epoch();
-  return {wall.count(), 1e3 * static_cast<double>(cpu.tv_sec) + 1e-6 * cpu.tv_nsec};
+  return {wall.count(),
+          1e3 * static_cast<double>(cpu.tv_sec) + 1e-6 * static_cast<double>(cpu.tv_nsec)};
 }
 
 void Print(const std::string& scan, const ObjectModel& model, const Candidate& candidate) {

@@ -20,8 +20,7 @@ struct Candidate {
   double score = 0.0;
 };
 
-// What a peer is given of a scan: points of which each cell of a grid of `spacing` (m) keeps its
-// mean, with normals (unit, towards the sensor) from our range image, and that image.
+// What a peer is given: a scan, and our range image of it for FitOf.
 struct Scene {
   Scan scan;
   RangeImage image;
