@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "detector_proc/matcher_process.h"
+#include "detector_proc/shard_options.h"
 #include "io/bus.h"
 #include "io/bus_setup.h"
 #include "io/model_file.h"
@@ -31,9 +32,15 @@ int main(int argc, char** argv) {
   app.add_option("--models", models,
                  "Load every *.rimod file of this folder; without it models come on RIMOD_MODEL")
       ->type_name("DIR");
+  rimod::ShardOptions shard;
+  rimod::AddShardOptions(&app, &shard);
   if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
   rimod::LogToStderr(app.get_name());
 
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  if (!result.setup) return result.exit_code;
+  const auto share = rimod::ShareFrom(shard, result.setup->configuration.pipeline);
+  if (!share) return 2;
   rimod::ModelFolder folder;
   if (!models.empty()) {
     rimod::ThreadPool pool(num_threads);
@@ -45,10 +52,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (folder.models.empty()) spdlog::warn("no models yet: waiting for some on the model channel");
-  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
-  if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
   rimod::MatcherProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
-                                num_threads, models, std::move(folder.models));
+                                num_threads, models, std::move(folder.models), *share);
   return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -30,6 +31,12 @@ constexpr std::size_t kMaxModels = 256;
 
 constexpr std::int64_t kNoScan = std::numeric_limits<std::int64_t>::min();
 
+std::vector<std::string> NamesOf(const std::vector<ObjectModel>& models) {
+  std::vector<std::string> names;
+  for (const ObjectModel& model : models) names.push_back(model.name);
+  return names;
+}
+
 std::chrono::milliseconds PatienceOf(const BusParams& params) {
   return std::chrono::milliseconds(static_cast<int>(1e3 * params.join_patience));
 }
@@ -38,10 +45,12 @@ std::chrono::milliseconds PatienceOf(const BusParams& params) {
 
 MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                                const Configuration& configuration, int num_threads,
-                               std::string models_folder, std::vector<ObjectModel> models)
+                               std::string models_folder, std::vector<ObjectModel> models,
+                               const ModelShare& share)
     : channels_(channels),
       params_(configuration.pipeline),
       models_folder_(std::move(models_folder)),
+      share_(share),
       pool_(num_threads),
       image_joiner_(JoinerParamsFrom(configuration.bus)),
       feature_joiner_(JoinerParamsFrom(configuration.bus)),
@@ -57,6 +66,7 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       first_models_(std::move(models)),
       tracker_(params_.early),
       last_scan_(kNoScan) {
+  if (!share.is_all()) shard_.emplace(share, params_, channels, &publisher_);
   worker_ = std::make_unique<NewestWorker<Job>>(
       configuration.bus.max_waiting_scans, [this] { RebuildDatabase(); },
       [this](const Job& job) { Work(job); });
@@ -68,15 +78,19 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
   subscriptions_.push_back(SubscribeTo<feature_set_t>(
       in, channels.features, kQueueCapacity, observer,
       [this](feature_set_t section) { return OnFeatures(std::move(section)); }));
-  subscriptions_.push_back(SubscribeTo<partial_range_image_t>(
-      in, channels.partial_range_image, kQueueCapacity, observer,
-      [this](partial_range_image_t section) { return OnPartialRangeImage(std::move(section)); }));
-  subscriptions_.push_back(SubscribeTo<partial_feature_set_t>(
-      in, channels.partial_features, kQueueCapacity, observer,
-      [this](partial_feature_set_t section) { return OnPartialFeatures(std::move(section)); }));
+  if (!shard_) SubscribeToPartials(in, observer);
   subscriptions_.push_back(SubscribeTo<object_model_t>(
       in, channels.model, kQueueCapacity, observer,
       [this](object_model_t section) { return OnModel(std::move(section)); }));
+}
+
+void MatcherProcess::SubscribeToPartials(lcm::LCM* in, const SubscriptionObserver& observer) {
+  subscriptions_.push_back(SubscribeTo<partial_range_image_t>(
+      in, channels_.partial_range_image, kQueueCapacity, observer,
+      [this](partial_range_image_t section) { return OnPartialRangeImage(std::move(section)); }));
+  subscriptions_.push_back(SubscribeTo<partial_feature_set_t>(
+      in, channels_.partial_features, kQueueCapacity, observer,
+      [this](partial_feature_set_t section) { return OnPartialFeatures(std::move(section)); }));
 }
 
 MatcherProcess::~MatcherProcess() {
@@ -186,10 +200,14 @@ void MatcherProcess::RebuildDatabase() try {
   const Execution execution = StoppableExecution(pool_.MakeExecution(), &stop_);
   const auto begin = Clock::now();
   std::vector<ObjectModel> models = ModelsOfFolder(execution);
-  models.erase(
-      std::remove_if(models.begin(), models.end(),
-                     [&](const ObjectModel& model) { return bus_models.count(model.name); }),
-      models.end());
+  const ModelSplit split(share_, NamesOf(models));
+  models.erase(std::remove_if(models.begin(), models.end(),
+                              [&](const ObjectModel& model) {
+                                return bus_models.count(model.name) || !split.Takes(model.name);
+                              }),
+               models.end());
+  for (auto it = bus_models.begin(); it != bus_models.end();)
+    it = split.Takes(it->first) ? std::next(it) : bus_models.erase(it);
   if (models.size() + bus_models.size() > kMaxModels) {
     status_.CountDropped("models failed");
     return status_.ReportError("models", "more models than can be kept: the new ones are left out");
@@ -198,6 +216,7 @@ void MatcherProcess::RebuildDatabase() try {
   database_.emplace(std::move(models), params_, execution);
   bus_models_ = std::move(bus_models);
   num_models_ = static_cast<std::int64_t>(database_->models().size());
+  if (shard_) shard_->SetNumModels(static_cast<int>(num_models_));
   malloc_trim(0);  // what was read and is not needed any more goes back to the system
   const std::chrono::duration<double, std::milli> elapsed = Clock::now() - begin;
   spdlog::info("looking for {} models; index built in {:.0f} ms", database_->models().size(),
@@ -211,7 +230,9 @@ void MatcherProcess::RebuildDatabase() try {
 
 void MatcherProcess::Work(const Job& job) try {
   if (!database_) return;
-  if (job.kind == JobKind::kScan) {
+  if (job.kind == JobKind::kScan && shard_) {
+    WorkAsShard(job.scan);
+  } else if (job.kind == JobKind::kScan) {
     WorkOnScan(job.scan);
   } else if (job.kind == JobKind::kPartial) {
     WorkOnPartial(job.sweep_utime, job.scan);
@@ -242,6 +263,27 @@ void MatcherProcess::WorkOnScan(const DescribedScan& scan) {
   if (!early_ || early_->utime != scan.utime) return;
   early_->T_local_sensor = scan.image.T_local_sensor();
   FinishSweep(result.detections);
+}
+
+void MatcherProcess::WorkAsShard(const DescribedScan& scan) {
+  const auto begin = Clock::now();
+  StageTimer timer;
+  Execution execution = pool_.MakeExecution();
+  timer.Watch(&execution);
+  execution = StoppableExecution(std::move(execution), &stop_);
+  ShardAnswer answer;
+  answer.utime = scan.utime;
+  answer.scan = DigestOf(scan);
+  answer.judged = WorthJoining(
+      JudgeObjects(scan.image, scan.features, *database_, params_, execution), params_);
+  const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
+  timer.Add("total", total.count());
+  answer.stage_times = timer.times();
+  status_.AddStageTimes(answer.stage_times);
+  status_.CountOut();
+  spdlog::info("scan {}: {} candidates, {:.0f} ms", scan.utime, answer.judged.candidates.size(),
+               total.count());
+  shard_->Answer(std::move(answer));
 }
 
 void MatcherProcess::WorkOnPartial(std::int64_t sweep_utime, const DescribedScan& scan) {
@@ -303,6 +345,7 @@ void MatcherProcess::OnIdle() {
   partial_feature_joiner_.GiveUpStale(now);
   partial_partners_.GiveUpStale(now);
   GiveUpSilentSweep();
+  if (shard_) shard_->AnnounceIfDue(now);
   status_.SetSectionCounters("range image", image_joiner_.counters());
   status_.SetSectionCounters("features", feature_joiner_.counters());
   status_.SetSectionCounters("model", model_joiner_.counters());

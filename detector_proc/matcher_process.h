@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "detector_proc/shard_speaker.h"
 #include "io/channels.h"
 #include "io/config.h"
 #include "io/early_messages.h"
+#include "io/model_split.h"
 #include "io/newest_worker.h"
 #include "io/paced_publisher.h"
 #include "io/partner_joiner.h"
@@ -34,14 +36,17 @@ namespace rimod {
 // the start and, while running, over the bus; a model takes the place of another of its name.
 // While there is nothing else to do, sweeps that still go on are looked at, and what is found in
 // them is told early.
+// As a shard it has a part of the models, and sends what it found of them to the fuser instead, at
+// whole scans only.
 class MatcherProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process. num_threads: of the computation,
   // 0 for as many as the machine has. models: those of the folder (may be empty: none), which is
-  // read again when models come over the bus: keeping them for that would double the memory.
+  // read again when models come over the bus: keeping them for that would double the memory. share:
+  // which of them it takes. A shard needs the default method: throws std::invalid_argument.
   MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                  const Configuration& configuration, int num_threads, std::string models_folder,
-                 std::vector<ObjectModel> models);
+                 std::vector<ObjectModel> models, const ModelShare& share = {});
   // Breaks off the computation at hand.
   ~MatcherProcess();
 
@@ -49,6 +54,7 @@ class MatcherProcess {
   void OnIdle();
 
  private:
+  void SubscribeToPartials(lcm::LCM* in, const SubscriptionObserver& observer);
   std::string OnRangeImage(range_image_t section);
   std::string OnFeatures(feature_set_t section);
   std::string OnModel(object_model_t section);
@@ -74,6 +80,7 @@ class MatcherProcess {
   std::vector<ObjectModel> ModelsOfFolder(const Execution& execution);
   void Work(const Job& job);
   void WorkOnScan(const DescribedScan& scan);
+  void WorkAsShard(const DescribedScan& scan);
   void WorkOnPartial(std::int64_t sweep_utime, const DescribedScan& scan);
   // The sweep that is looked at has ended with these detections: tells it, and forgets the sweep.
   void FinishSweep(const std::vector<Detection>& detections);
@@ -83,6 +90,7 @@ class MatcherProcess {
   const Channels channels_;
   const PipelineParams params_;
   const std::string models_folder_;
+  const ModelShare share_;
   std::atomic<bool> stop_{false};
   ThreadPool pool_;
   SectionJoiner<range_image_t> image_joiner_;
@@ -97,6 +105,7 @@ class MatcherProcess {
   std::int64_t partial_sweep_ = 0;                                     // that sweep
   StatusReporter status_;
   PacedPublisher publisher_;
+  std::optional<ShardSpeaker> shard_;
 
   std::mutex new_models_mutex_;
   std::map<std::string, ObjectModel> new_models_;  // by name; not in the database yet

@@ -10,6 +10,7 @@ void BusParams::Validate() const {
   CheckWithin("idle_time", idle_time, 0.05, 3600.0);
   CheckWithin("quiet_time", quiet_time, 0.01, 3600.0);
   CheckWithin("join_patience", join_patience, 0.1, 3600.0);
+  CheckWithin("shard_patience", shard_patience, 0.1, 3600.0);
 }
 
 }  // namespace rimod

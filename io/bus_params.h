@@ -18,7 +18,9 @@ struct BusParams {
   // sweep's end; costs the scan's bytes a second time.
   bool scan_ahead = true;
   double join_patience = 5.0;  // s, wait for missing sections and partners of a scan; 0.1 .. 3600
-  void Validate() const;       // throws std::invalid_argument naming field and value
+  double shard_patience =
+      5.0;  // s, the fuser waits so long after the first answer to a scan; 0.1 .. 3600
+  void Validate() const;  // throws std::invalid_argument naming field and value
 };
 
 }  // namespace rimod

@@ -23,6 +23,8 @@ constexpr std::array<std::string Channels::*, 15> kNames = {&Channels::laser,
                                                             &Channels::partial_range_image,
                                                             &Channels::partial_features,
                                                             &Channels::early_detections,
+                                                            &Channels::shards,
+                                                            &Channels::shard_candidates,
                                                             &Channels::status};
 
 }  // namespace

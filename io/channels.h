@@ -21,6 +21,8 @@ struct Channels {
   std::string partial_range_image = "RIMOD_RANGE_IMAGE_PARTIAL";  // rimod.partial_range_image_t
   std::string partial_features = "RIMOD_FEATURES_PARTIAL";        // rimod.partial_feature_set_t
   std::string early_detections = "RIMOD_DETECTIONS_EARLY";        // rimod.early_detections_t
+  std::string shards = "RIMOD_SHARDS";                            // rimod.shard_t
+  std::string shard_candidates = "RIMOD_SHARD_CANDIDATES";        // rimod.shard_candidates_t
   std::string status = "RIMOD_STATUS";                            // rimod.status_t
 };
 

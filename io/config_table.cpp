@@ -236,6 +236,7 @@ Keys BusKeys(BusParams* b) {
       {"bus", "quiet_time", &b->quiet_time, "s, the assembler sends a scan when no line came for so long, and again if the sweep goes on; 0.01 .. 3600"},
       {"bus", "scan_ahead", &b->scan_ahead, "what a sweep grows by is sent at once, so that the extractor has the scan at the sweep's end"},
       {"bus", "join_patience", &b->join_patience, "s, wait for missing parts of a scan; 0.1 .. 3600"},
+      {"bus", "shard_patience", &b->shard_patience, "s, the fuser waits so long after the first answer to a scan; 0.1 .. 3600"},
   };
 }
 

@@ -16,6 +16,8 @@
 #include "rimod/range_image_t.hpp"
 #include "rimod/scan_end_t.hpp"
 #include "rimod/scan_t.hpp"
+#include "rimod/shard_candidates_t.hpp"
+#include "rimod/shard_t.hpp"
 #include "rimod/status_t.hpp"
 
 namespace rimod {
@@ -216,6 +218,28 @@ void WalkShape<early_detections_t>(ShapeCursor* cursor) {
     cursor->Skip(kInt64 + kByte + kInt64 + kDouble);
     SkipDetection(cursor);
   }
+}
+
+template <>
+void WalkShape<shard_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64);
+  cursor->SkipString();
+  cursor->Skip(2 * kInt32 + 2 * kInt64 + kInt32);
+}
+
+template <>
+void WalkShape<shard_candidates_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64 + 2 * kInt32);
+  WalkShape<shard_t>(cursor);
+  cursor->Skip(kInt64 + kInt32 + kPose + kInt32);
+  const std::int32_t num_models = cursor->Count();
+  for (std::int32_t i = 0; i < num_models && cursor->ok(); ++i) {
+    cursor->SkipString();
+    cursor->Skip(kBox);
+  }
+  cursor->SkipArray(cursor->Count(), kInt32 + 14 * kDouble + kInt32);
+  SkipArrays(cursor, 2, cursor->Count(), kInt32);
+  SkipStageTimes(cursor);
 }
 
 template <>

@@ -56,6 +56,19 @@ object_model_t HeaderOf(const object_model_t& section) {
   return header;
 }
 
+shard_candidates_t HeaderOf(const shard_candidates_t& section) {
+  shard_candidates_t header = {};
+  header.utime = section.utime;
+  header.num_sections = section.num_sections;
+  header.shard = section.shard;
+  header.scan = section.scan;
+  header.num_pixels = section.num_pixels;
+  for (int i = 0; i < 3; ++i) header.sensor_position[i] = section.sensor_position[i];
+  for (int i = 0; i < 4; ++i) header.sensor_orientation[i] = section.sensor_orientation[i];
+  header.num_found = section.num_found;
+  return header;
+}
+
 // Encoded headers are compared: that tells every bit, also of values that are not numbers.
 
 bool SameHeader(const scan_t& a, const scan_t& b) {
@@ -71,6 +84,10 @@ bool SameHeader(const feature_set_t& a, const feature_set_t& b) {
 }
 
 bool SameHeader(const object_model_t& a, const object_model_t& b) {
+  return EncodeMessage(HeaderOf(a)) == EncodeMessage(HeaderOf(b));
+}
+
+bool SameHeader(const shard_candidates_t& a, const shard_candidates_t& b) {
   return EncodeMessage(HeaderOf(a)) == EncodeMessage(HeaderOf(b));
 }
 

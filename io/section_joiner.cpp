@@ -120,5 +120,6 @@ template class SectionJoiner<scan_t>;
 template class SectionJoiner<range_image_t>;
 template class SectionJoiner<feature_set_t>;
 template class SectionJoiner<object_model_t>;
+template class SectionJoiner<shard_candidates_t>;
 
 }  // namespace rimod

@@ -38,7 +38,7 @@ struct SectionCounters {
 // Joins the sections of a message type into wholes. Sections may arrive in any order, wholes
 // interleaved. Only sections whose header fields (all but section number and lists) are equal are
 // joined; of one whole a section that came twice with different content gives the whole up.
-// Section: scan_t, range_image_t, feature_set_t or object_model_t.
+// Section: scan_t, range_image_t, feature_set_t, object_model_t or shard_candidates_t.
 template <typename Section>
 class SectionJoiner {
  public:

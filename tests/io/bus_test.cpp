@@ -73,6 +73,9 @@ TEST(BusParamsTest, BadValuesAreNamed) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("max_waiting_scans"), std::string::npos);
   }
+  params = BusParams();
+  params.shard_patience = 0.0;
+  EXPECT_THROW(params.Validate(), std::invalid_argument);
 }
 
 }  // namespace

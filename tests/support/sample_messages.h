@@ -15,6 +15,7 @@
 #include "io/scan_messages.h"
 #include "rimod/object_model_t.hpp"
 #include "rimod/status_t.hpp"
+#include "tests/io/random_answers.h"
 #include "tests/io/random_values.h"
 
 namespace rimod {
@@ -132,6 +133,15 @@ inline early_detections_t SampleMessage() {
   early.objects.resize(2);
   early.objects[1].detection.class_name = "chair";
   return ToMessage(early);
+}
+template <>
+inline shard_t SampleMessage() {
+  return ToMessage(Shard{"2/4", 2, 4, 5, 6, 7}, 8);
+}
+template <>
+inline shard_candidates_t SampleMessage() {
+  RandomValues random(1);
+  return ToSections(RandomAnswer(&random, "2/4", 2, 3))[0];
 }
 template <>
 inline status_t SampleMessage() {

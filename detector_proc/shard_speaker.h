@@ -1,0 +1,39 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string>
+
+#include "io/channels.h"
+#include "io/model_split.h"
+#include "io/paced_publisher.h"
+#include "io/shard_messages.h"
+#include "rimod/params.h"
+
+namespace rimod {
+
+// What a matcher that is a shard says: that it is there, and what it found.
+class ShardSpeaker {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // The publisher must outlive it.
+  ShardSpeaker(const ModelShare& share, const PipelineParams& params, const Channels& channels,
+               PacedPublisher* publisher);
+
+  // That it looks for now: it is ready.
+  void SetNumModels(int num_models) { num_models_ = num_models; }
+  // Twice a second, once it is ready.
+  void AnnounceIfDue(Time now);
+  // Fills in who answers.
+  void Answer(ShardAnswer answer);
+
+ private:
+  Shard shard_;                      // but for the number of models
+  std::atomic<int> num_models_{-1};  // not ready yet
+  Channels channels_;
+  PacedPublisher* publisher_;
+  Time next_;
+};
+
+}  // namespace rimod
