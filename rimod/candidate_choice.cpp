@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -115,15 +116,24 @@ std::vector<PixelRun> RunsOf(const std::vector<int>& pixels) {
 JudgedScan Joined(const std::vector<JudgedScan>& parts) {
   JudgedScan joined;
   if (parts.empty()) return joined;
-  joined.num_pixels = parts.front().num_pixels;
   joined.T_local_sensor = parts.front().T_local_sensor;
+  std::set<std::string> names;
   for (const JudgedScan& part : parts) {
-    const int first_model = static_cast<int>(joined.models.size());
-    joined.num_found += part.num_found;
-    joined.models.insert(joined.models.end(), part.models.begin(), part.models.end());
-    for (const ExplainingCandidate& candidate : part.candidates) {
-      joined.candidates.push_back(candidate);
-      joined.candidates.back().candidate.model += first_model;
+    joined.num_pixels = std::max(joined.num_pixels, part.num_pixels);
+    const std::size_t num_before = joined.models.size();
+    std::vector<int> place(part.models.size(), -1);  // in the joined list
+    for (std::size_t m = 0; m < place.size(); ++m) {
+      if (!names.insert(part.models[m].name).second) continue;
+      place[m] = static_cast<int>(joined.models.size());
+      joined.models.push_back(part.models[m]);
+    }
+    if (part.models.empty() || joined.models.size() > num_before)
+      joined.num_found += part.num_found;
+    for (const ExplainingCandidate& item : part.candidates) {
+      const int model = place[item.candidate.model];
+      if (model < 0) continue;
+      joined.candidates.push_back(item);
+      joined.candidates.back().candidate.model = model;
     }
   }
   return joined;

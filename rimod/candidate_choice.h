@@ -53,7 +53,9 @@ struct JudgedScan {
   std::vector<ExplainingCandidate> candidates;  // those of one model in its order of ranking
 };
 
-// One list of parts that looked for different models in the same scan.
+// One list of what parts found in the same scan that each looked for some models. Of a model that
+// several looked for only the first one's candidates count; num_found leaves out parts of which
+// nothing counts.
 JudgedScan Joined(const std::vector<JudgedScan>& parts);
 
 // Leaves out what has no part in ChooseDetections(Joined({judged, ..})), whatever the others are:

@@ -131,6 +131,17 @@ TEST(CandidateChoiceTest, WhoJudgedWhichModelsDoesNotMatter) {
   EXPECT_GT(num_detections, 300u);
 }
 
+TEST(CandidateChoiceTest, AModelThatTwoLookedForCountsOnce) {
+  std::mt19937 random(5);
+  const JudgedScan scan = RandomScan(4, &random);
+  const PipelineParams params = DefaultParams(Method::kDefault);
+  std::vector<JudgedScan> parts = Split(scan, {0, 1, 1, 0}, 2);
+  JudgedScan twice = Split(scan, {0, 1, 0, 1}, 2)[0];  // models 0 and 2, once more
+  twice.num_found = 0;
+  parts.push_back(twice);
+  ExpectSame(ChooseDetections(scan, params), ChooseDetections(Joined(parts), params));
+}
+
 TEST(CandidateChoiceTest, WhatIsNotWorthJoiningIsLeftOut) {
   std::mt19937 random(1);
   const JudgedScan scan = RandomScan(3, &random);
@@ -167,6 +178,16 @@ TEST(CandidateChoiceTest, EqualScoresAreDecidedByRankThenName) {
   EXPECT_EQ(ChooseDetections(scan, DefaultParams(Method::kDefault)).detections[0].class_name, "a");
   add(0, 0.3);
   EXPECT_EQ(ChooseDetections(scan, DefaultParams(Method::kDefault)).detections[0].class_name, "b");
+}
+
+// As answers of strangers may be.
+TEST(CandidateChoiceTest, PartsThatDisagreeOnTheImageAreSafe) {
+  std::mt19937 random(6);
+  std::vector<JudgedScan> parts = Split(RandomScan(4, &random), {0, 0, 1, 1}, 2);
+  parts[0].num_pixels = 0;
+  for (ExplainingCandidate& item : parts[0].candidates) item.explained.clear();
+  EXPECT_EQ(Joined(parts).num_pixels, kPixels);
+  ChooseDetections(Joined(parts), DefaultParams(Method::kDefault));
 }
 
 TEST(CandidateChoiceTest, NothingGivesNothing) {
