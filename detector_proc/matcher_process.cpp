@@ -201,6 +201,7 @@ void MatcherProcess::RebuildDatabase() try {
   const auto begin = Clock::now();
   std::vector<ObjectModel> models = ModelsOfFolder(execution);
   const ModelSplit split(share_, NamesOf(models));
+  CountModelsOfAllShards(models, bus_models);
   models.erase(std::remove_if(models.begin(), models.end(),
                               [&](const ObjectModel& model) {
                                 return bus_models.count(model.name) || !split.Takes(model.name);
@@ -226,6 +227,18 @@ void MatcherProcess::RebuildDatabase() try {
 } catch (const std::exception& error) {
   status_.CountDropped("models failed");
   status_.ReportError(error.what(), std::string("models: ") + error.what());
+}
+
+// Each model gets the part of the work that it would have beside all the others in one matcher.
+void MatcherProcess::CountModelsOfAllShards(const std::vector<ObjectModel>& of_folder,
+                                            const std::map<std::string, ObjectModel>& of_bus) {
+  shared_params_ = params_;
+  if (!shard_ || params_.ranking.num_models > 0) return;
+  for (const auto& [name, model] : of_bus)
+    if (bus_names_.size() < kMaxModels) bus_names_.insert(name);
+  std::set<std::string> names = bus_names_;
+  for (const ObjectModel& model : of_folder) names.insert(model.name);
+  shared_params_.ranking.num_models = static_cast<int>(names.size());
 }
 
 void MatcherProcess::Work(const Job& job) try {
@@ -275,7 +288,7 @@ void MatcherProcess::WorkAsShard(const DescribedScan& scan) {
   answer.utime = scan.utime;
   answer.scan = DigestOf(scan);
   answer.judged = WorthJoining(
-      JudgeObjects(scan.image, scan.features, *database_, params_, execution), params_);
+      JudgeObjects(scan.image, scan.features, *database_, shared_params_, execution), params_);
   const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
   timer.Add("total", total.count());
   answer.stage_times = timer.times();

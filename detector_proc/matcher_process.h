@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,8 @@ class MatcherProcess {
 
   // In the worker's thread:
   void RebuildDatabase();
+  void CountModelsOfAllShards(const std::vector<ObjectModel>& of_folder,
+                              const std::map<std::string, ObjectModel>& of_bus);
   std::vector<ObjectModel> ModelsOfFolder(const Execution& execution);
   void Work(const Job& job);
   void WorkOnScan(const DescribedScan& scan);
@@ -113,6 +116,9 @@ class MatcherProcess {
   // Of the worker's thread:
   std::optional<std::vector<ObjectModel>> first_models_;  // the folder's, as read at the start
   std::map<std::string, ObjectModel> bus_models_;         // by name; they replace the folder's
+  std::set<std::string> bus_names_;  // of all models that came, also those of other shards
+  // params_, with the number of models in all shards.
+  PipelineParams shared_params_;
   std::optional<ModelDatabase> database_;
   EarlyTracker tracker_;
   // The sweep that is looked at early: its last look, without objects.

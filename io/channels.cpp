@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
 
-constexpr std::array<std::string Channels::*, 15> kNames = {&Channels::laser,
+constexpr std::array<std::string Channels::*, 17> kNames = {&Channels::laser,
                                                             &Channels::laser_to_local,
                                                             &Channels::scan,
                                                             &Channels::range_image,
