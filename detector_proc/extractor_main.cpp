@@ -3,6 +3,7 @@
 #include "detector_proc/extractor_process.h"
 #include "io/bus.h"
 #include "io/bus_setup.h"
+#include "io/log_replay.h"
 #include "io/process_options.h"
 
 int main(int argc, char** argv) {
@@ -22,16 +23,23 @@ int main(int argc, char** argv) {
   int num_threads = 0;
   rimod::AddCommonOptions(&app, &common);
   rimod::AddBusOptions(&app, &bus);
+  rimod::ReplayOptions replay;
+  rimod::AddReplayOptions(&app, &replay);
   rimod::AddThreadsOption(&app, &num_threads);
   rimod::CloudChannels clouds;
   rimod::AddCloudOptions(&app, &clouds);
   if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
   rimod::LogToStderr(app.get_name());
 
-  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, rimod::BusForReplay(bus, replay));
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
-  rimod::ExtractorProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
-                                  num_threads, clouds);
-  return rimod::RunBus(lcm, signals.stop(), [&process] { process.OnIdle(); }) ? 0 : 1;
+  const rimod::Channels& channels = result.setup->channels;
+  rimod::ProcessRun run(replay, lcm,
+                        {channels.range_image, channels.features, channels.partial_range_image,
+                         channels.partial_features},
+                        channels.status);
+  rimod::ExtractorProcess process(lcm, lcm, channels, result.setup->configuration, num_threads,
+                                  clouds, run.tempo());
+  return run.Run(signals.stop(), [&process] { process.OnIdle(); });
 }

@@ -43,21 +43,22 @@ bool IsSameScan(const StampedScan& a, const StampedScan& b) {
 
 ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                                    const Configuration& configuration, int num_threads,
-                                   const CloudChannels& clouds)
-    : channels_(channels),
+                                   const CloudChannels& clouds, const Tempo& tempo)
+    : tempo_(tempo),
+      channels_(channels),
       params_(configuration.pipeline),
       pool_(num_threads),
       joiner_(JoinerParamsFrom(configuration.bus)),
       partial_joiner_(JoinerParamsFrom(configuration.bus)),
       patience_(static_cast<int>(1e3 * configuration.bus.join_patience)),
       placer_(params_.cloud, !clouds.poses.empty()),
-      status_(out, channels.status, "rimod-extractor"),
-      publisher_(out, configuration.bus),
+      status_(out, channels.status, "rimod-extractor", tempo),
+      publisher_(out, configuration.bus, tempo),
       last_scan_(kNoScan),
       worker_(
           configuration.bus.max_waiting_scans,
           // Scans wait here, where the newest wins, and not as messages that nobody overtakes.
-          [this] { publisher_.Flush(); }, [this](const Job& job) { Work(job); }) {
+          [this] { publisher_.Flush(); }, [this](const Job& job) { Work(job); }, tempo.at_once()) {
   const SubscriptionObserver observer = status_.MakeObserver();
   subscriptions_.push_back(
       SubscribeTo<scan_t>(in, channels.scan, kQueueCapacity, observer,
@@ -90,7 +91,7 @@ void ExtractorProcess::SubscribeToClouds(lcm::LCM* in, const CloudChannels& clou
 }
 
 std::string ExtractorProcess::OnSection(scan_t section) {
-  const auto sections = joiner_.Add(std::move(section), Clock::now());
+  const auto sections = joiner_.Add(std::move(section), tempo_.Now());
   if (!sections) return "";
   JoinedScan joined = JoinScanSections(*sections);
   if (!joined.scan) return joined.error;
@@ -103,14 +104,14 @@ std::string ExtractorProcess::OnSection(scan_t section) {
 
 // Once only: who replays a scan wants it to be worked on again.
 bool ExtractorProcess::IsKnownAlready(const StampedScan& scan) {
-  if (!repetition_until_ || Clock::now() > *repetition_until_ || !IsSameScan(scan, *last_given_))
+  if (!repetition_until_ || tempo_.Now() > *repetition_until_ || !IsSameScan(scan, *last_given_))
     return false;
   repetition_until_.reset();
   return true;
 }
 
 std::string ExtractorProcess::OnPartialSection(partial_scan_t section, bool look) {
-  const auto sections = partial_joiner_.Add(std::move(section.section), Clock::now());
+  const auto sections = partial_joiner_.Add(std::move(section.section), tempo_.Now());
   if (!sections) return "";
   const JoinedSweepGrowth joined = SweepGrowthFrom(section.utime, section.step, *sections);
   if (!joined.growth) return joined.error;
@@ -143,7 +144,7 @@ void ExtractorProcess::GiveWhenWhole() {
   if (last_given_ && IsSameScan(scan, *last_given_)) return;
   ++num_ahead_;
   last_given_ = StampOf(scan);
-  repetition_until_ = Clock::now() + patience_;
+  repetition_until_ = tempo_.Now() + patience_;
   Give(std::move(scan));
 }
 
@@ -204,6 +205,7 @@ void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
   const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
   timer.Add("total", total.count());
   status_.AddStageTimes(timer.times());
+  tempo_.TellStageTimes(scan.utime, timer.times());
   status_.CountOut();
   spdlog::info("scan {}: {} points, {} features, {:.0f} ms", scan.utime, scan.scan.points.size(),
                features.features.size(), total.count());
@@ -223,12 +225,14 @@ void ExtractorProcess::WorkOnPartial(const StampedScan& scan) {
                         ToPartialSections(features, scan.utime, scan.utime_end));
   ++num_partial_out_;
   const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
-  status_.AddStageTimes({{"partial_total", total.count()}});
+  const StageTimes times = {{"partial_total", total.count()}};
+  status_.AddStageTimes(times);
+  tempo_.TellStageTimes(scan.utime, times);
 }
 
 void ExtractorProcess::OnIdle() {
-  joiner_.GiveUpStale(Clock::now());
-  partial_joiner_.GiveUpStale(Clock::now());
+  joiner_.GiveUpStale(tempo_.Now());
+  partial_joiner_.GiveUpStale(tempo_.Now());
   status_.SetSectionCounters("scan", joiner_.counters());
   status_.SetCounter("scans known ahead", num_ahead_);
   status_.SetCounter("partial scans described", num_partial_out_);

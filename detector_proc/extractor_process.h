@@ -18,6 +18,7 @@
 #include "io/scan_messages.h"
 #include "io/section_joiner.h"
 #include "io/status_reporter.h"
+#include "io/tempo.h"
 #include "io/thread_pool.h"
 #include "rimod/cloud_placer.h"
 #include "rimod/growing_scan.h"
@@ -35,7 +36,7 @@ class ExtractorProcess {
   // 0 for as many as the machine has.
   ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                    const Configuration& configuration, int num_threads,
-                   const CloudChannels& clouds = {});
+                   const CloudChannels& clouds = {}, const Tempo& tempo = {});
   // Breaks off the computation at hand.
   ~ExtractorProcess();
 
@@ -67,6 +68,7 @@ class ExtractorProcess {
   void WorkOnScan(const StampedScan& scan);
   void WorkOnPartial(const StampedScan& scan);
 
+  const Tempo tempo_;
   const Channels channels_;
   const PipelineParams params_;
   std::atomic<bool> stop_{false};

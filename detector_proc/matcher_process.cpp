@@ -46,8 +46,9 @@ std::chrono::milliseconds PatienceOf(const BusParams& params) {
 MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                                const Configuration& configuration, int num_threads,
                                std::string models_folder, std::vector<ObjectModel> models,
-                               const ModelShare& share)
-    : channels_(channels),
+                               const ModelShare& share, const Tempo& tempo)
+    : tempo_(tempo),
+      channels_(channels),
       params_(configuration.pipeline),
       models_folder_(std::move(models_folder)),
       share_(share),
@@ -61,15 +62,15 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       partial_partners_(PatienceOf(configuration.bus)),
       sweep_patience_(PatienceOf(configuration.bus) +
                       std::chrono::milliseconds(static_cast<int>(1e3 * params_.early.period))),
-      status_(out, channels.status, "rimod-matcher"),
-      publisher_(out, configuration.bus),
+      status_(out, channels.status, "rimod-matcher", tempo),
+      publisher_(out, configuration.bus, tempo),
       first_models_(std::move(models)),
       tracker_(params_.early),
       last_scan_(kNoScan) {
   if (!share.is_all()) shard_.emplace(share, params_, channels, &publisher_);
   worker_ = std::make_unique<NewestWorker<Job>>(
       configuration.bus.max_waiting_scans, [this] { RebuildDatabase(); },
-      [this](const Job& job) { Work(job); });
+      [this](const Job& job) { Work(job); }, tempo.at_once());
   worker_->Poke();
   const SubscriptionObserver observer = status_.MakeObserver();
   subscriptions_.push_back(SubscribeTo<range_image_t>(
@@ -99,25 +100,25 @@ MatcherProcess::~MatcherProcess() {
 }
 
 std::string MatcherProcess::OnRangeImage(range_image_t section) {
-  const auto sections = image_joiner_.Add(std::move(section), Clock::now());
+  const auto sections = image_joiner_.Add(std::move(section), tempo_.Now());
   if (!sections) return "";
   JoinedRangeImage joined = JoinRangeImageSections(*sections);
   if (!joined.image) return joined.error;
-  Give(partners_.AddImage(sections->front().utime, std::move(*joined.image), Clock::now()));
+  Give(partners_.AddImage(sections->front().utime, std::move(*joined.image), tempo_.Now()));
   return "";
 }
 
 std::string MatcherProcess::OnFeatures(feature_set_t section) {
-  const auto sections = feature_joiner_.Add(std::move(section), Clock::now());
+  const auto sections = feature_joiner_.Add(std::move(section), tempo_.Now());
   if (!sections) return "";
   JoinedFeatures joined = JoinFeatureSections(*sections);
   if (!joined.features) return joined.error;
-  Give(partners_.AddFeatures(sections->front().utime, std::move(*joined.features), Clock::now()));
+  Give(partners_.AddFeatures(sections->front().utime, std::move(*joined.features), tempo_.Now()));
   return "";
 }
 
 std::string MatcherProcess::OnModel(object_model_t section) {
-  const auto sections = model_joiner_.Add(std::move(section), Clock::now());
+  const auto sections = model_joiner_.Add(std::move(section), tempo_.Now());
   if (!sections) return "";
   JoinedModel joined = JoinModelSections(*sections);
   if (!joined.model) return joined.error;
@@ -133,23 +134,23 @@ std::string MatcherProcess::OnModel(object_model_t section) {
 }
 
 std::string MatcherProcess::OnPartialRangeImage(partial_range_image_t section) {
-  const auto sections = partial_image_joiner_.Add(std::move(section.section), Clock::now());
+  const auto sections = partial_image_joiner_.Add(std::move(section.section), tempo_.Now());
   if (!sections) return "";
   JoinedRangeImage joined = JoinRangeImageSections(*sections);
   if (!joined.image) return joined.error;
   GivePartial(section.utime, partial_partners_.AddImage(sections->front().utime,
-                                                        std::move(*joined.image), Clock::now()));
+                                                        std::move(*joined.image), tempo_.Now()));
   return "";
 }
 
 std::string MatcherProcess::OnPartialFeatures(partial_feature_set_t section) {
-  const auto sections = partial_feature_joiner_.Add(std::move(section.section), Clock::now());
+  const auto sections = partial_feature_joiner_.Add(std::move(section.section), tempo_.Now());
   if (!sections) return "";
   JoinedFeatures joined = JoinFeatureSections(*sections);
   if (!joined.features) return joined.error;
   GivePartial(section.utime,
               partial_partners_.AddFeatures(sections->front().utime, std::move(*joined.features),
-                                            Clock::now()));
+                                            tempo_.Now()));
   return "";
 }
 
@@ -164,13 +165,13 @@ void MatcherProcess::Give(std::optional<DescribedScan> scan) {
 void MatcherProcess::GivePartial(std::int64_t sweep_utime, std::optional<DescribedScan> scan) {
   if (!scan || last_scan_ == sweep_utime) return;
   partial_sweep_ = sweep_utime;
-  last_partial_ = Clock::now();
+  last_partial_ = tempo_.Now();
   num_early_overtaken_ += worker_->GiveWhenIdle({JobKind::kPartial, sweep_utime, std::move(*scan)});
 }
 
 // A sweep that ended incomplete, or whose scan got lost, has no detections.
 void MatcherProcess::GiveUpSilentSweep() {
-  if (!last_partial_ || Clock::now() - *last_partial_ <= sweep_patience_) return;
+  if (!last_partial_ || tempo_.Now() - *last_partial_ <= sweep_patience_) return;
   last_partial_.reset();
   worker_->GiveWhenIdle({JobKind::kGiveUp, partial_sweep_, {}});
 }
@@ -317,7 +318,9 @@ void MatcherProcess::WorkOnPartial(std::int64_t sweep_utime, const DescribedScan
   PublishEarly(/*is_final=*/false, tracker_.Update(Time(sweep_utime), Time(scan.utime), sightings));
   ++num_early_looks_;
   const std::chrono::duration<double, std::milli> total = Clock::now() - begin;
-  status_.AddStageTimes({{"partial_total", total.count()}});
+  const StageTimes times = {{"partial_total", total.count()}};
+  status_.AddStageTimes(times);
+  tempo_.TellStageTimes(sweep_utime, times);
 }
 
 void MatcherProcess::FinishSweep(const std::vector<Detection>& detections) {
@@ -345,11 +348,12 @@ void MatcherProcess::Publish(const DescribedScan& scan, const DetectionResult& r
   detections.stage_times = times;
   publisher_.Publish(channels_.detections, ToMessage(detections));
   status_.AddStageTimes(times);
+  tempo_.TellStageTimes(scan.utime, times);
   status_.CountOut();
 }
 
 void MatcherProcess::OnIdle() {
-  const auto now = Clock::now();
+  const auto now = tempo_.Now();
   image_joiner_.GiveUpStale(now);
   feature_joiner_.GiveUpStale(now);
   model_joiner_.GiveUpStale(now);

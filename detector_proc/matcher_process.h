@@ -22,6 +22,7 @@
 #include "io/raw_subscription.h"
 #include "io/section_joiner.h"
 #include "io/status_reporter.h"
+#include "io/tempo.h"
 #include "io/thread_pool.h"
 #include "rimod/detector.h"
 #include "rimod/early_detection.h"
@@ -47,7 +48,8 @@ class MatcherProcess {
   // which of them it takes. A shard needs the default method: throws std::invalid_argument.
   MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
                  const Configuration& configuration, int num_threads, std::string models_folder,
-                 std::vector<ObjectModel> models, const ModelShare& share = {});
+                 std::vector<ObjectModel> models, const ModelShare& share = {},
+                 const Tempo& tempo = {});
   // Breaks off the computation at hand.
   ~MatcherProcess();
 
@@ -90,6 +92,7 @@ class MatcherProcess {
   void PublishEarly(bool is_final, std::vector<EarlyObject> objects);
   void Publish(const DescribedScan& scan, const DetectionResult& result, const StageTimes& times);
 
+  const Tempo tempo_;
   const Channels channels_;
   const PipelineParams params_;
   const std::string models_folder_;

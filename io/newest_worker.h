@@ -18,12 +18,16 @@ namespace rimod {
 template <typename Item>
 class NewestWorker {
  public:
-  // prepare is called before each item and after each Poke(); neither callback may throw.
-  NewestWorker(int max_waiting, std::function<void()> prepare, std::function<void(Item)> work)
+  // prepare is called before each item and after each Poke(); neither callback may throw. at_once:
+  // there is no thread, all work is done by the caller while it gives the item, none is overtaken.
+  NewestWorker(int max_waiting, std::function<void()> prepare, std::function<void(Item)> work,
+               bool at_once = false)
       : max_waiting_(static_cast<std::size_t>(max_waiting)),
+        at_once_(at_once),
         prepare_(std::move(prepare)),
-        work_(std::move(work)),
-        thread_([this] { Run(); }) {}
+        work_(std::move(work)) {
+    if (!at_once_) thread_ = std::thread([this] { Run(); });
+  }
 
   // What waits is left undone; the item at hand is finished.
   ~NewestWorker() {
@@ -32,13 +36,14 @@ class NewestWorker {
       stopping_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
   NewestWorker(const NewestWorker&) = delete;
   NewestWorker& operator=(const NewestWorker&) = delete;
 
   // Returns the number of items (0 or 1) that this one pushed out.
   int Give(Item item) {
+    if (at_once_) return WorkAtOnce(std::move(item));
     int num_overtaken = 0;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -55,6 +60,7 @@ class NewestWorker {
 
   // An item of the second rank: one waits, a newer one takes its place. Returns as Give().
   int GiveWhenIdle(Item item) {
+    if (at_once_) return WorkAtOnce(std::move(item));
     int num_overtaken = 0;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -76,6 +82,7 @@ class NewestWorker {
 
   // Has prepare called, also when there is no item.
   void Poke() {
+    if (at_once_) return prepare_();
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       poked_ = true;
@@ -84,6 +91,12 @@ class NewestWorker {
   }
 
  private:
+  int WorkAtOnce(Item item) {
+    prepare_();
+    work_(std::move(item));
+    return 0;
+  }
+
   void Run() {
     while (true) {
       {
@@ -112,6 +125,7 @@ class NewestWorker {
   }
 
   const std::size_t max_waiting_;
+  const bool at_once_;
   const std::function<void()> prepare_;
   const std::function<void(Item)> work_;
   mutable std::mutex mutex_;

@@ -18,12 +18,14 @@ constexpr auto kMaxPause = std::chrono::milliseconds(50);
 
 }  // namespace
 
-PacedPublisher::PacedPublisher(lcm::LCM* lcm, const BusParams& params)
+PacedPublisher::PacedPublisher(lcm::LCM* lcm, const BusParams& params, const Tempo& tempo)
     : lcm_(lcm),
       bytes_per_second_(params.max_megabytes_per_second * 1e6),
+      at_once_(tempo.at_once()),
       free_at_(Clock::now()),
-      give_up_at_(Clock::time_point::max()),
-      thread_([this] { Send(); }) {}
+      give_up_at_(Clock::time_point::max()) {
+  if (!at_once_) thread_ = std::thread([this] { Send(); });
+}
 
 PacedPublisher::~PacedPublisher() {
   {
@@ -32,12 +34,18 @@ PacedPublisher::~PacedPublisher() {
     give_up_at_ = Clock::now() + kFarewell;
   }
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void PacedPublisher::PublishBytes(const std::string& channel, std::vector<std::uint8_t> bytes,
                                   int slowness) {
   std::unique_lock<std::mutex> lock(mutex_);
+  if (at_once_) {
+    const int status =
+        lcm_->publish(channel, bytes.data(), static_cast<unsigned int>(bytes.size()));
+    if (status != 0) ++num_failed_;
+    return;
+  }
   changed_.wait(lock, [this] { return stopping_ || queued_bytes_ <= kMaxQueuedBytes; });
   if (stopping_) return;
   queued_bytes_ += bytes.size();

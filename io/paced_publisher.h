@@ -13,16 +13,17 @@
 
 #include "io/bus_params.h"
 #include "io/message_codec.h"
+#include "io/tempo.h"
 
 namespace rimod {
 
 // Sends messages in the order given, each followed by a pause as long as its bytes take at the
 // allowed rate, longer on a busy machine, so that receivers with the stock socket buffer lose
-// nothing. Has a thread of its
-// own: callers wait only when very much is queued already.
+// nothing. Has a thread of its own: callers wait only when very much is queued already. In a replay
+// it sends at once, without thread and pauses.
 class PacedPublisher {
  public:
-  PacedPublisher(lcm::LCM* lcm, const BusParams& params);
+  PacedPublisher(lcm::LCM* lcm, const BusParams& params, const Tempo& tempo = {});
   // Sends what is queued, for half a second at most.
   ~PacedPublisher();
   PacedPublisher(const PacedPublisher&) = delete;
@@ -64,6 +65,7 @@ class PacedPublisher {
 
   lcm::LCM* lcm_;
   double bytes_per_second_;
+  const bool at_once_;
   std::chrono::steady_clock::time_point free_at_;  // when the next message may be sent
   // Of the sending thread:
   std::chrono::steady_clock::duration lateness_{0};  // of waking up, of late

@@ -16,8 +16,6 @@
 namespace rimod {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr auto kPeriod = std::chrono::seconds(1);
 constexpr std::size_t kMedianScans = 20;
 // Causes come partly from outside: without bounds a hostile neighbour could fill the memory.
@@ -58,8 +56,12 @@ void AddCounter(const std::string& name, std::int64_t value, status_t* status) {
 
 }  // namespace
 
-StatusReporter::StatusReporter(lcm::LCM* lcm, std::string channel, std::string process)
-    : lcm_(lcm), channel_(std::move(channel)), totals_{}, next_publish_(Clock::now()) {
+StatusReporter::StatusReporter(lcm::LCM* lcm, std::string channel, std::string process, Tempo tempo)
+    : lcm_(lcm),
+      channel_(std::move(channel)),
+      tempo_(std::move(tempo)),
+      totals_{},
+      next_publish_(tempo_.Now()) {
   totals_.process = std::move(process);
   totals_.version = Version();
   totals_.pid = static_cast<std::int32_t>(getpid());
@@ -143,7 +145,7 @@ SubscriptionObserver StatusReporter::MakeObserver() {
 }
 
 void StatusReporter::PublishIfDue() {
-  const auto now = Clock::now();
+  const auto now = tempo_.Now();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (now < next_publish_) return;

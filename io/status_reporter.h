@@ -13,6 +13,7 @@
 #include "io/raw_subscription.h"
 #include "io/section_joiner.h"
 #include "io/stage_timer.h"
+#include "io/tempo.h"
 #include "rimod/status_t.hpp"
 
 namespace lcm {
@@ -25,7 +26,7 @@ namespace rimod {
 // thread. What goes wrong is logged too, each kind (channel and cause) once.
 class StatusReporter {
  public:
-  StatusReporter(lcm::LCM* lcm, std::string channel, std::string process);
+  StatusReporter(lcm::LCM* lcm, std::string channel, std::string process, Tempo tempo = {});
 
   void CountIn();
   void CountOut();
@@ -66,6 +67,7 @@ class StatusReporter {
   mutable std::mutex mutex_;
   lcm::LCM* lcm_;
   std::string channel_;
+  const Tempo tempo_;
   status_t totals_;                                                      // without lists
   std::map<std::string, std::int64_t> counters_;                         // by name
   std::vector<std::pair<std::string, std::deque<double>>> stage_times_;  // as first seen

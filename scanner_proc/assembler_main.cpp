@@ -2,6 +2,7 @@
 
 #include "io/bus.h"
 #include "io/bus_setup.h"
+#include "io/log_replay.h"
 #include "io/process_options.h"
 #include "scanner_proc/assembler_process.h"
 
@@ -20,6 +21,8 @@ int main(int argc, char** argv) {
   rimod::BusOptions bus;
   rimod::AddCommonOptions(&app, &common);
   rimod::AddBusOptions(&app, &bus);
+  rimod::ReplayOptions replay;
+  rimod::AddReplayOptions(&app, &replay);
   bool early = false;
   app.add_flag("--early", early,
                "Send growing scans, too, every early.period of the configuration: extractor and "
@@ -27,14 +30,17 @@ int main(int argc, char** argv) {
   if (const auto exit_code = rimod::ParseCommandLine(&app, argc, argv)) return *exit_code;
   rimod::LogToStderr(app.get_name());
 
-  const rimod::BusSetupResult result = rimod::SetUpBus(common, bus);
+  const rimod::BusSetupResult result = rimod::SetUpBus(common, rimod::BusForReplay(bus, replay));
   if (!result.setup) return result.exit_code;
   lcm::LCM* const lcm = result.setup->lcm.get();
-  rimod::AssemblerProcess process(lcm, lcm, result.setup->channels, result.setup->configuration,
-                                  early);
+  const rimod::Channels& channels = result.setup->channels;
+  rimod::ProcessRun run(
+      replay, lcm, {channels.scan, channels.partial_scan, channels.scan_ahead, channels.scan_end},
+      channels.status);
+  rimod::AssemblerProcess process(lcm, lcm, channels, result.setup->configuration, early,
+                                  run.tempo());
   constexpr auto kIdlePeriod =
       std::chrono::milliseconds(5);  // the end of a sweep is seen late by that
-  const bool stopped = rimod::RunBus(
-      lcm, signals.stop(), [&process] { process.OnIdle(); }, kIdlePeriod);
-  return stopped ? 0 : 1;
+  return run.Run(
+      signals.stop(), [&process] { process.OnIdle(); }, kIdlePeriod);
 }

@@ -32,8 +32,10 @@ double GrowthPeriod(const Configuration& configuration, bool tell_growth) {
 }  // namespace
 
 AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                                   const Configuration& configuration, bool tell_growth)
-    : scan_channel_(channels.scan),
+                                   const Configuration& configuration, bool tell_growth,
+                                   const Tempo& tempo)
+    : tempo_(tempo),
+      scan_channel_(channels.scan),
       scan_ahead_channel_(channels.scan_ahead),
       scan_end_channel_(channels.scan_end),
       scan_ahead_(configuration.bus.scan_ahead),
@@ -41,12 +43,12 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
       growth_period_(GrowthPeriod(configuration, tell_growth)),
       idle_time_(configuration.bus.idle_time),
       assembler_(configuration.pipeline.sweep),
-      last_input_(Clock::now()),
+      last_input_(tempo.Now()),
       silence_(std::chrono::duration_cast<Clock::duration>(
                    std::chrono::duration<double>(configuration.bus.quiet_time)),
                last_input_),
-      status_(out, channels.status, "rimod-assembler"),
-      publisher_(out, configuration.bus) {
+      status_(out, channels.status, "rimod-assembler", tempo),
+      publisher_(out, configuration.bus, tempo) {
   subscriptions_.push_back(SubscribeTo<bot_core::planar_lidar_t>(
       in, channels.laser, kQueueCapacity, status_.MakeObserver(),
       [this](const bot_core::planar_lidar_t& message) { return OnLine(message); }));
@@ -58,7 +60,7 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
 std::string AssemblerProcess::OnLine(const bot_core::planar_lidar_t& message) {
   LaserLineFromMessage line = FromMessage(message);
   if (!line.line) return line.error;
-  silence_.OnLine(Clock::now(), !assembler_.collecting());
+  silence_.OnLine(tempo_.Now(), !assembler_.collecting());
   Take([&] { return assembler_.AddLine(std::move(*line.line)); });
   return "";
 }
@@ -72,10 +74,11 @@ std::string AssemblerProcess::OnPose(const bot_core::rigid_transform_t& message)
 
 template <typename Input>
 void AssemblerProcess::Take(Input input) {
-  last_input_ = Clock::now();
+  last_input_ = tempo_.Now();
   silence_.OnInput(last_input_);
+  const auto begin = Clock::now();
   const std::vector<Sweep> sweeps = input();
-  assembly_time_ += Clock::now() - last_input_;
+  assembly_time_ += Clock::now() - begin;
   PublishEnded(sweeps);
   PublishGrowth(growth_channel_, growth_period_);
   if (known_end_told_ || !assembler_.reached_known_end()) return;
@@ -84,9 +87,10 @@ void AssemblerProcess::Take(Input input) {
 }
 
 void AssemblerProcess::OnIdle() {
-  const auto begin = Clock::now();
-  silence_.Look(begin);
-  if (assembler_.collecting() && begin - last_input_ > idle_time_) {
+  const auto now = tempo_.Now();
+  silence_.Look(now);
+  if (assembler_.collecting() && now - last_input_ > idle_time_) {
+    const auto begin = Clock::now();
     const std::vector<Sweep> sweeps = assembler_.Finish();
     assembly_time_ += Clock::now() - begin;
     PublishEnded(sweeps);
@@ -136,7 +140,9 @@ void AssemblerProcess::PublishScan(const Sweep& sweep) {
   }
   status_.CountOut();
   const std::chrono::duration<double, std::milli> elapsed = assembly_time_;
-  status_.AddStageTimes({{"assembly", elapsed.count()}});
+  const StageTimes times = {{"assembly", elapsed.count()}};
+  status_.AddStageTimes(times);
+  tempo_.TellStageTimes(sweep.begin.count(), times);
   spdlog::info("scan {}: {} lines, {} points", sweep.begin.count(), sweep.num_lines,
                sweep.scan.points.size());
 }

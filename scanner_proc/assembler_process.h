@@ -14,6 +14,7 @@
 #include "io/paced_publisher.h"
 #include "io/raw_subscription.h"
 #include "io/status_reporter.h"
+#include "io/tempo.h"
 #include "rimod/sweep_assembler.h"
 #include "scanner_proc/line_silence.h"
 
@@ -26,7 +27,8 @@ class AssemblerProcess {
  public:
   // Both LCM instances (they may be one) must outlive the process.
   AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels,
-                   const Configuration& configuration, bool tell_growth = false);
+                   const Configuration& configuration, bool tell_growth = false,
+                   const Tempo& tempo = {});
 
   // To be called many times a second: sends the scan of a sweep as soon as its lines stop, ends the
   // sweep when nothing comes any more, reports. Where it is called late the machine is busy, and
@@ -51,6 +53,7 @@ class AssemblerProcess {
     int num_lines = 0;
   };
 
+  const Tempo tempo_;
   const std::string scan_channel_, scan_ahead_channel_, scan_end_channel_;
   const bool scan_ahead_;  // growth is sent ahead of the scan
   const std::string growth_channel_;

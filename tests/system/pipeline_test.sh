@@ -4,6 +4,7 @@
 #   - every message was recorded: all lines and poses, all sections of all that was sent;
 #   - the detections equal those of rimod-detect, to the bit;
 #   - the recorded log, replayed into each stage alone, gives the same messages again, to the bit;
+#   - the same by --replay, without a network;
 #   - with growing scans objects are told before the sweep has ended, with ids that stay, and
 #     everything else is as before, to the bit.
 # Exit code 77: cannot run here.
@@ -127,6 +128,21 @@ replay rimod-extractor 'RIMOD_SCAN' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
 replay rimod-extractor 'RIMOD_SCAN_AHEAD|RIMOD_SCAN_END' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
 replay rimod-extractor 'RIMOD_SCAN.*' 'RIMOD_RANGE_IMAGE RIMOD_FEATURES'
 replay rimod-matcher 'RIMOD_RANGE_IMAGE|RIMOD_FEATURES' 'RIMOD_HYPOTHESES RIMOD_DETECTIONS'
+
+# The same without a network, at full speed.
+replay_offline() {
+  local name=$1 arguments=()
+  shift
+  [ "$name" = rimod-matcher ] && arguments=(--models "$models")
+  "$bin/$name" "${arguments[@]}" --replay "$work/all" --out "$work/$name.replayed" 2>"$work/$name.err" ||
+    fail "$name --replay"
+  messages "$work/all" "$@" >"$work/before"
+  messages "$work/$name.replayed" "$@" >"$work/again"
+  same "$* by $name --replay" "$work/before" "$work/again"
+}
+replay_offline rimod-assembler RIMOD_SCAN
+replay_offline rimod-extractor RIMOD_RANGE_IMAGE RIMOD_FEATURES
+replay_offline rimod-matcher RIMOD_HYPOTHESES RIMOD_DETECTIONS
 
 echo "== with growing scans"
 awaited=RIMOD_DETECTIONS
