@@ -104,7 +104,8 @@ SensorCloudFromMessage FromMessage(const bot_core::pointcloud2_t& message) {
   // Both counts are covered by bytes that are there: the product is bounded by those.
   cloud.points.reserve(static_cast<std::size_t>(message.height) *
                        static_cast<std::size_t>(message.width));
-  for (std::int64_t row = 0; row < message.height; ++row) {
+  const std::int64_t num_rows = message.width > 0 ? message.height : 0;  // empty rows have no bytes
+  for (std::int64_t row = 0; row < num_rows; ++row) {
     for (std::int64_t column = 0; column < message.width; ++column) {
       const std::uint8_t* const record =
           message.data.data() + row * message.row_step + column * message.point_step;

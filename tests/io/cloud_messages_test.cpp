@@ -108,6 +108,16 @@ TEST(CloudMessagesTest, AnEmptyCloudIsACloud) {
   EXPECT_TRUE(back.cloud->points.empty());
 }
 
+// Found by the fuzzer: rows without pixels have no bytes that would bound their number.
+TEST(CloudMessagesTest, TwoThousandMillionEmptyRowsTakeNoTime) {
+  bot_core::pointcloud2_t message = ToMessage(SensorCloud{}, "");
+  message.height = std::numeric_limits<std::int32_t>::max();
+  message.width = 0;
+  const SensorCloudFromMessage back = FromMessage(message);
+  ASSERT_TRUE(back.cloud) << back.error;
+  EXPECT_TRUE(back.cloud->points.empty());
+}
+
 TEST(CloudMessagesTest, HabitsOfOldDriversAreTaken) {
   bot_core::pointcloud2_t message = ToMessage(RandomCloud(3), "");
   message.row_step = 0;
