@@ -4,7 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <iostream>
 #include <lcm/lcm-cpp.hpp>
 
 #include "io/version.h"
@@ -70,9 +74,16 @@ std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv) {
   try {
     app->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app->exit(error) == 0 ? 0 : kBadUsage;
+    return app->exit(error) == 0 ? CheckStdout(0) : kBadUsage;
   }
   return std::nullopt;
+}
+
+int CheckStdout(int exit_code) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return exit_code;
+  std::fprintf(stderr, "stdout: writing failed: %s\n", std::strerror(errno));
+  return 1;
 }
 
 void LogToStderr(const std::string& executable) {

@@ -44,6 +44,10 @@ void AddCloudOptions(CLI::App* app, CloudChannels* channels);
 // (told on stderr); without one the program goes on.
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv);
 
+// The exit code of a program that wrote its results to stdout: 1, told on stderr, where they could
+// not be written (a full disk, a closed pipe), else as given.
+int CheckStdout(int exit_code);
+
 // Sends messages of spdlog to stderr, each with time and the executable's name.
 void LogToStderr(const std::string& executable);
 

@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
     spdlog::error("{}", channels.error);
     return 2;
   }
-  return source == "live" ? rimod::ShowLive(rimod::LcmUrl(bus), *channels.channels, limits)
-                          : rimod::ShowLog(source, *channels.channels);
+  const int exit_code = source == "live"
+                            ? rimod::ShowLive(rimod::LcmUrl(bus), *channels.channels, limits)
+                            : rimod::ShowLog(source, *channels.channels);
+  return rimod::CheckStdout(exit_code);
 }

@@ -42,6 +42,8 @@ int main(int argc, char** argv) {
     spdlog::error("{}", channels.error);
     return 2;
   }
-  return options.log.empty() ? rimod::TopLive(rimod::LcmUrl(bus), *channels.channels, options)
-                             : rimod::TopLog(*channels.channels, options);
+  const int exit_code = options.log.empty()
+                            ? rimod::TopLive(rimod::LcmUrl(bus), *channels.channels, options)
+                            : rimod::TopLog(*channels.channels, options);
+  return rimod::CheckStdout(exit_code);
 }
