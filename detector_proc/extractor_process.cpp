@@ -53,6 +53,7 @@ ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
       patience_(static_cast<int>(1e3 * configuration.bus.join_patience)),
       placer_(params_.cloud, !clouds.poses.empty()),
       status_(out, channels.status, "rimod-extractor", tempo),
+      senders_(in, channels.status, {channels.range_image, channels.features}, &status_),
       publisher_(out, configuration.bus, tempo),
       last_scan_(kNoScan),
       worker_(
@@ -241,6 +242,7 @@ void ExtractorProcess::OnIdle() {
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_.num_waiting()));
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
+  senders_.Report(tempo_.Now());
   status_.PublishIfDue();
 }
 

@@ -17,6 +17,7 @@
 #include "io/raw_subscription.h"
 #include "io/scan_messages.h"
 #include "io/section_joiner.h"
+#include "io/sender_watch.h"
 #include "io/status_reporter.h"
 #include "io/tempo.h"
 #include "io/thread_pool.h"
@@ -87,6 +88,7 @@ class ExtractorProcess {
   std::atomic<std::int64_t> num_partial_out_{0};
   std::atomic<std::int64_t> num_partial_overtaken_{0};
   StatusReporter status_;
+  SenderWatch senders_;
   PacedPublisher publisher_;
   std::atomic<std::int64_t> last_scan_;  // its utime: growing scans of that sweep are late
   NewestWorker<Job> worker_;

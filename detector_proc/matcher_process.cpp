@@ -63,6 +63,7 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       sweep_patience_(PatienceOf(configuration.bus) +
                       std::chrono::milliseconds(static_cast<int>(1e3 * params_.early.period))),
       status_(out, channels.status, "rimod-matcher", tempo),
+      senders_(in, channels.status, {channels.detections}, &status_),
       publisher_(out, configuration.bus, tempo),
       first_models_(std::move(models)),
       tracker_(params_.early),
@@ -373,6 +374,7 @@ void MatcherProcess::OnIdle() {
   status_.SetGauge("models", num_models_);
   status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_->num_waiting()));
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
+  senders_.Report(tempo_.Now());
   status_.PublishIfDue();
 }
 

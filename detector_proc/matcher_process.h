@@ -21,6 +21,7 @@
 #include "io/partner_joiner.h"
 #include "io/raw_subscription.h"
 #include "io/section_joiner.h"
+#include "io/sender_watch.h"
 #include "io/status_reporter.h"
 #include "io/tempo.h"
 #include "io/thread_pool.h"
@@ -110,6 +111,7 @@ class MatcherProcess {
   std::optional<std::chrono::steady_clock::time_point> last_partial_;  // of a sweep without a scan
   std::int64_t partial_sweep_ = 0;                                     // that sweep
   StatusReporter status_;
+  SenderWatch senders_;
   PacedPublisher publisher_;
   std::optional<ShardSpeaker> shard_;
 

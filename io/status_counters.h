@@ -14,6 +14,8 @@ constexpr char kCpuCounter[] = "cpu ms";
 // What the process holds now, and the most that it ever held, kB (1024 bytes).
 constexpr char kMemoryCounter[] = "memory kB";
 constexpr char kPeakMemoryCounter[] = "peak memory kB";
+// "sends <channel>" is 1: where the process sends its results (io/sender_watch.h).
+constexpr char kSendsPrefix[] = "sends ";
 // Scans that have come and wait for the computation.
 constexpr char kWaitingScansCounter[] = "waiting scans";
 // Messages that are ready and wait to be sent.

@@ -101,6 +101,7 @@ struct SweepCounters {
   std::int64_t bad_ranges = 0;          // NaN, negative
   std::int64_t near_ranges = 0;         // below min_range
   std::int64_t missing_lines = 0;       // holes shorter than a pause
+  std::int64_t crowded_lines = 0;       // sooner after the one before than one laser sends them
   std::int64_t clock_jumps = 0;         // time ran backwards by a pause or more
   std::int64_t complete_sweeps = 0;
   std::int64_t incomplete_sweeps = 0;

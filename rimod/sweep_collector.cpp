@@ -11,6 +11,11 @@ namespace {
 constexpr std::size_t kMaxPoints = 20000000;
 // A mean of unit vectors shorter than this has no direction to speak of.
 constexpr double kMinMeanForward = 0.05;
+// Two lasers on one channel: their lines alternate, so that at least every second one follows the
+// one before after half a line or less. One laser's lines come at line_duration; a late stamp
+// brings the next line closer, but that of few.
+constexpr double kCrowdedGap = 0.75;      // of line_duration
+constexpr double kMaxCrowdedShare = 0.3;  // of a sweep's lines
 
 double Seconds(Time duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -20,7 +25,7 @@ double Unwrapped(double angle, double reference) {
 }
 
 std::string Format(const char* format, double first, double second) {
-  char text[160];
+  char text[200];
   std::snprintf(text, sizeof(text), format, first, second);
   return text;
 }
@@ -37,6 +42,7 @@ std::optional<Time> SweepCollector::newest() const {
 void SweepCollector::AddCounters(SweepCounters* counters) const {
   counters->idle_lines += idle_lines_;
   counters->missing_lines += missing_lines_;
+  counters->crowded_lines += crowded_lines_;
   counters->complete_sweeps += complete_sweeps_;
   counters->incomplete_sweeps += incomplete_sweeps_;
 }
@@ -70,11 +76,13 @@ void SweepCollector::Append(const PlacedLine& placed) {
       lines_.empty() ? placed.tilt_begin : Unwrapped(placed.tilt_begin, lines_.back().tilt_end);
   line.tilt_end = Unwrapped(placed.tilt_end, line.tilt_begin);
   line.missing_before = LinesMissingBefore(line);
+  line.is_crowded = IsCrowded(line);
   line.first_point = points_.size();
   line.first_no_return = no_return_directions_.size();
   line.position = placed.position;
   line.forward = placed.forward;
   missing_lines_ += line.missing_before;
+  crowded_lines_ += line.is_crowded ? 1 : 0;
   lines_.push_back(line);
   points_.insert(points_.end(), placed.points.begin(), placed.points.end());
   no_return_directions_.insert(no_return_directions_.end(), placed.no_return_directions.begin(),
@@ -86,6 +94,11 @@ int SweepCollector::LinesMissingBefore(const Line& line) const {
   constexpr double kMost = 1e6;  // keeps the number an int when line_duration is absurdly small
   const double periods = Seconds(line.begin - lines_.back().begin) / params_.line_duration;
   return std::max(0, static_cast<int>(std::lround(std::min(periods, kMost))) - 1);
+}
+
+bool SweepCollector::IsCrowded(const Line& line) const {
+  return !lines_.empty() &&
+         Seconds(line.begin - lines_.back().begin) < kCrowdedGap * params_.line_duration;
 }
 
 void SweepCollector::FollowTilt(std::size_t index) {
@@ -165,6 +178,8 @@ Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::
     sweep.num_missing_lines += lines_[i].missing_before;
   const double share =
       sweep.num_missing_lines / static_cast<double>(sweep.num_missing_lines + sweep.num_lines);
+  const auto num_crowded = std::count_if(lines_.begin() + first, lines_.begin() + last,
+                                         [](const Line& line) { return line.is_crowded; });
   sweep.turned_angle = lines_[std::min(extreme_, last - 1)].tilt_end - lines_[first].tilt_begin;
   if (!reason.empty()) {
     sweep.incomplete_reason = reason;
@@ -175,6 +190,11 @@ Sweep SweepCollector::TakeSweep(std::size_t first, std::size_t last, const std::
   } else if (share > params_.max_missing_share) {
     sweep.incomplete_reason = Format("%.0f of %.0f lines are missing", sweep.num_missing_lines,
                                      sweep.num_lines + sweep.num_missing_lines);
+  } else if (static_cast<double>(num_crowded) > kMaxCrowdedShare * sweep.num_lines) {
+    sweep.incomplete_reason = Format(
+        "%.0f of %.0f lines came sooner than one laser sends them: two on one channel, or a "
+        "wrong line_duration",
+        static_cast<double>(num_crowded), sweep.num_lines);
   } else {
     sweep.rest = RestOf(first, last);
     sweep.scan = TakeScan(first, last);

@@ -44,6 +44,7 @@ class SweepCollector {
     Time begin{0}, end{0};
     double tilt_begin = 0.0, tilt_end = 0.0;  // rad, continuous: not wrapped at pi
     int missing_before = 0;                   // lines lost between the line before and this one
+    bool is_crowded = false;                  // too soon after the line before
     std::size_t first_point = 0, first_no_return = 0;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d forward = Eigen::Vector3d::Zero();
@@ -51,6 +52,7 @@ class SweepCollector {
 
   void Append(const PlacedLine& line);
   int LinesMissingBefore(const Line& line) const;
+  bool IsCrowded(const Line& line) const;
   void FollowTilt(std::size_t index);
   bool HasReversed() const;
   bool IsResting() const;
@@ -81,6 +83,7 @@ class SweepCollector {
 
   std::int64_t idle_lines_ = 0;
   std::int64_t missing_lines_ = 0;
+  std::int64_t crowded_lines_ = 0;
   std::int64_t complete_sweeps_ = 0;
   std::int64_t incomplete_sweeps_ = 0;
 };

@@ -48,6 +48,7 @@ AssemblerProcess::AssemblerProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
                    std::chrono::duration<double>(configuration.bus.quiet_time)),
                last_input_),
       status_(out, channels.status, "rimod-assembler", tempo),
+      senders_(in, channels.status, {channels.scan}, &status_),
       publisher_(out, configuration.bus, tempo) {
   subscriptions_.push_back(SubscribeTo<bot_core::planar_lidar_t>(
       in, channels.laser, kQueueCapacity, status_.MakeObserver(),
@@ -99,6 +100,7 @@ void AssemblerProcess::OnIdle() {
     PublishUnended();
   }
   ReportCounters();
+  senders_.Report(tempo_.Now());
   status_.PublishIfDue();
 }
 
@@ -174,6 +176,7 @@ void AssemblerProcess::ReportCounters() {
   status_.SetCounter("bad ranges", counters.bad_ranges);
   status_.SetCounter("near ranges", counters.near_ranges);
   status_.SetCounter("missing lines", counters.missing_lines);
+  status_.SetCounter("lines too soon", counters.crowded_lines);
   status_.SetCounter("clock jumps", counters.clock_jumps);
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());

@@ -13,6 +13,7 @@
 #include "io/config.h"
 #include "io/paced_publisher.h"
 #include "io/raw_subscription.h"
+#include "io/sender_watch.h"
 #include "io/status_reporter.h"
 #include "io/tempo.h"
 #include "rimod/sweep_assembler.h"
@@ -67,6 +68,7 @@ class AssemblerProcess {
   bool known_end_told_ = false;      // of the sweep at hand
   std::optional<SentScan> sent_;     // of the sweep at hand, before its end
   StatusReporter status_;
+  SenderWatch senders_;
   PacedPublisher publisher_;
   std::vector<std::unique_ptr<BytesSubscription>> subscriptions_;
 };

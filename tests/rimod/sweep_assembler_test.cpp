@@ -294,6 +294,39 @@ TEST(SweepAssemblerTest, PauseInTheLinesEndsASweep) {
   EXPECT_EQ(sweeps[1].num_lines, 380);
 }
 
+// Lines of a second laser between those of the first, at any distance from them.
+TEST(SweepAssemblerTest, LinesOfTwoLasersMakeNoScanAndAreCounted) {
+  for (const std::int64_t distance : {1, 5000, 13335, 26669}) {
+    Input input = Record(100, SteadyTilt(-0.3, 0.3));
+    Input second = input;
+    input.lines.clear();
+    for (const LaserLine& line : second.lines) {
+      input.lines.push_back(line);
+      input.lines.push_back(line);
+      input.lines.back().time += Time(distance);
+    }
+    SweepAssembler assembler{SweepParams()};
+    const std::vector<Sweep> sweeps = Assemble(input, &assembler);
+    ASSERT_FALSE(sweeps.empty()) << distance;
+    for (const Sweep& sweep : sweeps) {
+      EXPECT_NE(sweep.incomplete_reason.find("two on one channel"), std::string::npos)
+          << distance << ": " << sweep.incomplete_reason;
+      EXPECT_TRUE(sweep.scan.points.empty());
+    }
+    EXPECT_GE(assembler.counters().crowded_lines, 90) << distance;
+  }
+}
+
+TEST(SweepAssemblerTest, AFewLinesThatCrowdCostNothing) {
+  Input input = Record(100, SteadyTilt(-0.3, 0.3));
+  for (std::size_t i = 10; i < 100; i += 10) input.lines[i].time += Time(12000);  // stamped late
+  SweepAssembler assembler{SweepParams()};
+  const std::vector<Sweep> sweeps = Assemble(input, &assembler);
+  ASSERT_EQ(sweeps.size(), 1u);
+  EXPECT_TRUE(sweeps[0].complete()) << sweeps[0].incomplete_reason;
+  EXPECT_EQ(assembler.counters().crowded_lines, 9);
+}
+
 TEST(SweepAssemblerTest, TiltMayPassTheVertical) {
   const std::vector<Sweep> sweeps = Assemble(Record(1000, SteadyTilt(-100 * kDegree, 4.0)));
   ASSERT_EQ(sweeps.size(), 1u);
