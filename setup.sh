@@ -13,15 +13,15 @@ packages=(
   # LCM and its viewers
   liblcm-dev libglib2.0-dev liblcm-bin liblcm-java libjchart2d-java openjdk-17-jdk-headless openjdk-17-jre
   # tests and demo
-  libgtest-dev libbenchmark-dev iproute2 nftables util-linux xvfb
+  libgtest-dev libbenchmark-dev iproute2 nftables libfaketime util-linux xvfb
 )
-checks=(clang-format clang-tidy ccache valgrind)
+checks=(clang clang-format clang-tidy libclang-rt-dev ccache valgrind)
 
 usage() {
   cat <<'END'
 usage: ./setup.sh [--checks] [--print]
-  --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, ccache,
-            valgrind
+  --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, clang
+            with its fuzzer, ccache, valgrind
   --print   print the packages, one a line, and install nothing
 END
 }
