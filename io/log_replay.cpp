@@ -113,15 +113,9 @@ int LogReplay::Run(const std::atomic<bool>& stop, const std::function<void()>& o
   if (!options_.out.empty()) writer_.emplace(options_.out);
   EventLogReader log(options_.log);
   const auto begin = Clock::now();
-  Tempo::Time last_idle = now_;
   on_idle();
   while (const std::optional<LogEvent> event = stop ? std::nullopt : log.Next()) {
-    Advance(event->utime);
-    if (now_ - last_idle >= kIdlePeriod) {
-      on_idle();
-      HandleWaiting();
-      last_idle = now_;
-    }
+    Advance(event->utime, on_idle);
     Handle(*event);
   }
   now_ += microseconds(kLongest);
@@ -144,12 +138,26 @@ int LogReplay::Run(const std::atomic<bool>& stop, const std::function<void()>& o
 }
 
 // The log's clock goes on by what lies between two events, and stands still where that is negative.
-void LogReplay::Advance(std::int64_t utime) {
+// On the way the process looks at what waits as often as on the bus; of a long pause at its
+// beginning, and at its end.
+void LogReplay::Advance(std::int64_t utime, const std::function<void()>& on_idle) {
+  constexpr int kLooks = 500;
   if (event_time_ && utime > *event_time_) {
     const std::uint64_t step =
         static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(*event_time_);
-    now_ += microseconds(static_cast<std::int64_t>(
-        std::min<std::uint64_t>(step, static_cast<std::uint64_t>(kLongest))));
+    const Tempo::Time end = now_ + microseconds(static_cast<std::int64_t>(std::min<std::uint64_t>(
+                                       step, static_cast<std::uint64_t>(kLongest))));
+    for (int look = 0; look < kLooks && end - last_idle_ >= kIdlePeriod; ++look) {
+      now_ = last_idle_ += kIdlePeriod;
+      on_idle();
+      HandleWaiting();
+    }
+    now_ = end;
+    if (end - last_idle_ >= kIdlePeriod) {
+      last_idle_ = end;
+      on_idle();
+      HandleWaiting();
+    }
   }
   event_time_ = utime;
 }

@@ -58,7 +58,7 @@ class LogReplay {
   void OnStageTimes(std::int64_t utime, const StageTimes& times);
   void Handle(const LogEvent& event);
   void HandleWaiting();
-  void Advance(std::int64_t utime);
+  void Advance(std::int64_t utime, const std::function<void()>& on_idle);
   std::string OnStatus(status_t status);
   void ReportTimes(double total_ms) const;
   void ReportLosses() const;
@@ -69,6 +69,7 @@ class LogReplay {
   std::set<std::string> own_channels_;
   std::optional<EventLogWriter> writer_;
   Tempo::Time now_{};                       // the log's clock, from 0 at its first event
+  Tempo::Time last_idle_{};                 // when the process last looked at what waits
   std::optional<std::int64_t> event_time_;  // us, of the event at hand
   std::optional<status_t> status_;          // the last
   std::int64_t num_sent_ = 0;
