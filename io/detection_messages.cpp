@@ -112,6 +112,20 @@ HypothesesFromMessage FromMessage(const pose_hypotheses_t& message) {
   return {std::move(hypotheses), ""};
 }
 
+DetectionFromMessage FromMessage(const detection_t& message) {
+  const std::optional<Eigen::Isometry3d> T_local_object =
+      PoseFrom(message.position, message.orientation);
+  const Eigen::Vector3d box_min(message.box_min[0], message.box_min[1], message.box_min[2]);
+  const Eigen::Vector3d box_max(message.box_max[0], message.box_max[1], message.box_max[2]);
+  if (!T_local_object) return {std::nullopt, "a pose is not a pose"};
+  if (!IsValidModelName(message.class_name)) return {std::nullopt, "a class name is not valid"};
+  if (!IsScore(message.score)) return {std::nullopt, "a score is not within 0 .. 1"};
+  if (!box_min.allFinite() || !box_max.allFinite() || (box_min.array() > box_max.array()).any()) {
+    return {std::nullopt, "a box is not a box"};
+  }
+  return {Detection{message.class_name, *T_local_object, box_min, box_max, message.score}, ""};
+}
+
 DetectionsFromMessage FromMessage(const detections_t& message) {
   if (message.num_detections < 0 || message.num_stage_times < 0 || message.num_models < 0 ||
       message.detections.size() != static_cast<std::size_t>(message.num_detections) ||
@@ -126,18 +140,9 @@ DetectionsFromMessage FromMessage(const detections_t& message) {
   detections.T_local_sensor = *T_local_sensor;
   detections.num_models = message.num_models;
   for (const detection_t& item : message.detections) {
-    const std::optional<Eigen::Isometry3d> T_local_object =
-        PoseFrom(item.position, item.orientation);
-    const Eigen::Vector3d box_min(item.box_min[0], item.box_min[1], item.box_min[2]);
-    const Eigen::Vector3d box_max(item.box_max[0], item.box_max[1], item.box_max[2]);
-    if (!T_local_object) return {std::nullopt, "a pose is not a pose"};
-    if (!IsValidModelName(item.class_name)) return {std::nullopt, "a class name is not valid"};
-    if (!IsScore(item.score)) return {std::nullopt, "a score is not within 0 .. 1"};
-    if (!box_min.allFinite() || !box_max.allFinite() || (box_min.array() > box_max.array()).any()) {
-      return {std::nullopt, "a box is not a box"};
-    }
-    detections.detections.push_back(
-        {item.class_name, *T_local_object, box_min, box_max, item.score});
+    DetectionFromMessage converted = FromMessage(item);
+    if (!converted.detection) return {std::nullopt, std::move(converted.error)};
+    detections.detections.push_back(std::move(*converted.detection));
   }
   for (const stage_time_t& item : message.stage_times) {
     detections.stage_times.emplace_back(item.stage, item.ms);

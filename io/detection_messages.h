@@ -36,6 +36,12 @@ struct HypothesesFromMessage {
 // are not unit, unknown stages, scores out of range, class names that are not valid give an error.
 HypothesesFromMessage FromMessage(const pose_hypotheses_t& message);
 
+struct DetectionFromMessage {
+  std::optional<Detection> detection;
+  std::string error;
+};
+DetectionFromMessage FromMessage(const detection_t& message);
+
 struct DetectionsFromMessage {
   std::optional<StampedDetections> detections;
   std::string error;

@@ -48,4 +48,34 @@ early_detections_t ToMessage(const StampedEarlyObjects& early) {
   return message;
 }
 
+EarlyObjectsFromMessage FromMessage(const early_detections_t& message) {
+  if (message.num_detections < 0 || message.num_models < 0 ||
+      message.detections.size() != static_cast<std::size_t>(message.num_detections)) {
+    return {std::nullopt, "a count does not fit its list"};
+  }
+  const std::optional<Eigen::Isometry3d> T_local_sensor =
+      LevelPoseFrom(message.sensor_position, message.sensor_orientation);
+  if (!T_local_sensor) return {std::nullopt, "sensor pose is not a pose"};
+  StampedEarlyObjects early;
+  early.utime = message.utime;
+  early.known_until = message.utime_end;
+  early.is_final = message.is_final != 0;
+  early.T_local_sensor = *T_local_sensor;
+  early.num_models = message.num_models;
+  for (const early_detection_t& item : message.detections) {
+    DetectionFromMessage converted = FromMessage(item.detection);
+    if (!converted.detection) return {std::nullopt, std::move(converted.error)};
+    if (item.status < early_detection_t::STATUS_NEW ||
+        item.status > early_detection_t::STATUS_WITHDRAWN) {
+      return {std::nullopt, "a status is unknown"};
+    }
+    if (!(item.unseen_share >= 0.0 && item.unseen_share <= 1.0))
+      return {std::nullopt, "a share is not within 0 .. 1"};
+    early.objects.push_back({item.id, static_cast<EarlyStatus>(item.status),
+                             Time(item.first_utime), item.unseen_share,
+                             std::move(*converted.detection)});
+  }
+  return {std::move(early), ""};
+}
+
 }  // namespace rimod

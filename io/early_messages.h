@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "rimod/early_detection.h"
@@ -21,5 +23,12 @@ struct StampedEarlyObjects {
 
 // Holds as many as fit into kMaxMessageBytes, the first ones.
 early_detections_t ToMessage(const StampedEarlyObjects& early);
+
+struct EarlyObjectsFromMessage {
+  std::optional<StampedEarlyObjects> early;
+  std::string error;  // the cause; empty when there are objects (maybe an empty list)
+};
+// The errors of detections, and unknown states and shares out of range.
+EarlyObjectsFromMessage FromMessage(const early_detections_t& message);
 
 }  // namespace rimod
