@@ -24,6 +24,7 @@ struct Channels {
   std::string shards = "RIMOD_SHARDS";                            // rimod.shard_t
   std::string shard_candidates = "RIMOD_SHARD_CANDIDATES";        // rimod.shard_candidates_t
   std::string status = "RIMOD_STATUS";                            // rimod.status_t
+  std::string preview = "RIMOD_PREVIEW";                          // bot_core.image_t
 };
 
 // Where scans come as point clouds; names of the user's own. Empty: none.

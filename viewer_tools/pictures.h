@@ -16,7 +16,8 @@ struct DrawnObject {
   Detection detection;
   const ObjectModel* model = nullptr;  // null: the box is drawn without the surface
   Colour colour;
-  std::string label;  // name and score
+  std::string label;            // name and score
+  bool is_provisional = false;  // told before the sweep has ended: drawn fainter, dashed
 };
 
 // The detections of one scan with their models (looked up by name), a colour a class. The models
@@ -27,6 +28,21 @@ std::vector<DrawnObject> MakeDrawnObjects(const std::vector<Detection>& detectio
 // The eight corners of a detection's box in the local frame, m: bit 0 of the index tells x (0 =
 // min), bit 1 y, bit 2 z.
 std::vector<Eigen::Vector3d> BoxCorners(const Detection& detection);
+
+// A place in the scan that a picture points out.
+struct MarkedPoint {
+  Eigen::Vector3d p_sensor = Eigen::Vector3d::Zero();  // m, level sensor frame
+  Colour colour;
+  bool large = false;
+};
+
+// What else a picture shows, and how large it is.
+struct PictureExtras {
+  std::vector<MarkedPoint> points;    // range image only
+  std::vector<DrawnObject> outlines;  // boxes in thin lines; neither surface nor label
+  int range_image_width = 1400;       // canvas pixels at most, unless the image has more columns
+  int top_view_side = 960;            // canvas pixels, of the longer side
+};
 
 // Where DrawRangeImage puts the pixels of the range image.
 struct RangeImageLayout {
@@ -39,14 +55,15 @@ struct RangeImageLayout {
     return {area.x + position.column * scale, area.y + position.row * scale};
   }
 };
-RangeImageLayout LayOutRangeImage(const RangeImage& image);
+RangeImageLayout LayOutRangeImage(const RangeImage& image,
+                                  int target_width = PictureExtras().range_image_width);
 
 // The range image, near light and far dark, with the objects drawn in: the points of the model
 // that the sensor should see and that nothing hides, the box, name and score. Never observed pixels
 // are hatched, those without a return plain violet. Above stands the title, below a legend and the
 // azimuth in degrees. An image of size 0 gives a picture that says so.
 cv::Mat DrawRangeImage(const RangeImage& image, const std::vector<DrawnObject>& objects,
-                       const std::string& title);
+                       const std::string& title, const PictureExtras& extras = {});
 
 // Where DrawTopView puts the local frame: x upwards, y to the left.
 struct TopViewLayout {
@@ -62,13 +79,14 @@ struct TopViewLayout {
   }
 };
 // Shows the sensor, the objects and the nearest nine tenths of the points.
-TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects);
+TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects,
+                            int side = PictureExtras().top_view_side);
 
 // The image's points from above, low ones dark and high ones light, without those above 2 m over
 // the floor (ceilings), with the objects' surface, footprint and heading (a line along x), names
 // and scores, a metre grid of the local frame and the sensor. Objects more than 1 km away are left
 // out.
 cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& all_objects,
-                    const std::string& title);
+                    const std::string& title, const PictureExtras& extras = {});
 
 }  // namespace rimod

@@ -114,7 +114,7 @@ void PaintSurface(const RangeImage& image, const RangeImageLayout& layout, const
                   const DrawnObject& object, cv::Mat* canvas) {
   constexpr double kSceneTolerance = 0.08;  // m: the scene may stand this far before the model
   constexpr double kOwnTolerance = 0.05;    // m: points behind others of the model are not seen
-  constexpr double kOpacity = 0.55;
+  const double opacity = object.is_provisional ? 0.3 : 0.55;
   const std::vector<Splat> splats = ProjectSurface(image, layout, object);
   DepthBuffer own(layout.area);
   for (const Splat& splat : splats)
@@ -129,7 +129,7 @@ void PaintSurface(const RangeImage& image, const RangeImageLayout& layout, const
   for (int y = layout.area.y; y < layout.area.br().y; ++y)
     for (int x = layout.area.x; x < layout.area.br().x; ++x)
       if (mask(y, x))
-        canvas->at<Colour>(y, x) = Blend(canvas->at<Colour>(y, x), object.colour, kOpacity);
+        canvas->at<Colour>(y, x) = Blend(canvas->at<Colour>(y, x), object.colour, opacity);
 }
 
 // Straight edges of the box are curves in a spherical image.
@@ -161,21 +161,49 @@ std::vector<std::vector<cv::Point>> ProjectEdges(const RangeImage& image,
   return lines;
 }
 
-// Draws the box and returns the rectangle round it.
+void DrawDashes(cv::Mat* area, const std::vector<cv::Point>& line, const cv::Scalar& colour,
+                int thickness) {
+  for (std::size_t i = 0; i + 1 < line.size(); i += 2)
+    cv::line(*area, line[i], line[i + 1], colour, thickness, cv::LINE_AA);
+}
+
+// Draws the box, dashed where that is asked for, and returns the rectangle round it.
 cv::Rect DrawBox(const RangeImage& image, const RangeImageLayout& layout, const DrawnObject& object,
-                 cv::Mat* canvas) {
+                 const std::vector<std::pair<int, cv::Scalar>>& strokes, cv::Mat* canvas) {
   const std::vector<std::vector<cv::Point>> lines = ProjectEdges(image, layout, object.detection);
   cv::Mat area = (*canvas)(layout.area);  // clips
   std::vector<cv::Point> all;
-  for (const auto& [thickness, colour] :
-       {std::pair(4, kDark), std::pair(2, ToScalar(object.colour))}) {
+  for (const auto& [thickness, colour] : strokes) {
     for (std::vector<cv::Point> line : lines) {
       all.insert(all.end(), line.begin(), line.end());
       for (cv::Point& p : line) p -= layout.area.tl();
-      cv::polylines(area, line, false, colour, thickness, cv::LINE_AA);
+      if (object.is_provisional) {
+        DrawDashes(&area, line, colour, thickness);
+      } else {
+        cv::polylines(area, line, false, colour, thickness, cv::LINE_AA);
+      }
     }
   }
   return all.empty() ? cv::Rect(layout.area.tl(), cv::Size(1, 1)) : cv::boundingRect(all);
+}
+
+void DrawOutlines(const RangeImage& image, const RangeImageLayout& layout,
+                  const std::vector<DrawnObject>& outlines, cv::Mat* canvas) {
+  for (const DrawnObject& outline : outlines)
+    DrawBox(image, layout, outline, {{1, ToScalar(outline.colour)}}, canvas);
+}
+
+void DrawPoints(const RangeImage& image, const RangeImageLayout& layout,
+                const std::vector<MarkedPoint>& points, cv::Mat* canvas) {
+  cv::Mat area = (*canvas)(layout.area);
+  for (const MarkedPoint& point : points) {
+    if (point.p_sensor.norm() < 1e-3) continue;
+    const cv::Point at =
+        cv::Point(layout.ToCanvas(Project(image.grid(), point.p_sensor))) - layout.area.tl();
+    const int radius = point.large ? 3 : 1;  // canvas pixels
+    cv::circle(area, at, radius + 1, kDark, cv::FILLED);
+    cv::circle(area, at, radius, ToScalar(point.colour), cv::FILLED);
+  }
 }
 
 void DrawAzimuths(const SphericalGrid& grid, const RangeImageLayout& layout, cv::Mat* canvas) {
@@ -226,11 +254,10 @@ void DrawLegend(const RangeSpan& span, const RangeImageLayout& layout, cv::Mat* 
 
 }  // namespace
 
-RangeImageLayout LayOutRangeImage(const RangeImage& image) {
-  constexpr int kTargetWidth = 1400;  // canvas pixels
+RangeImageLayout LayOutRangeImage(const RangeImage& image, int target_width) {
   constexpr int kMaxScale = 8;
   RangeImageLayout layout;
-  layout.scale = std::clamp(kTargetWidth / std::max(image.width(), 1), 1, kMaxScale);
+  layout.scale = std::clamp(target_width / std::max(image.width(), 1), 1, kMaxScale);
   layout.area = cv::Rect(kBorder, kBorder + kTitleHeight, image.width() * layout.scale,
                          image.height() * layout.scale);
   layout.canvas = cv::Size(std::max(layout.area.width, kMinWidth) + 2 * kBorder,
@@ -239,8 +266,8 @@ RangeImageLayout LayOutRangeImage(const RangeImage& image) {
 }
 
 cv::Mat DrawRangeImage(const RangeImage& image, const std::vector<DrawnObject>& objects,
-                       const std::string& title) {
-  const RangeImageLayout layout = LayOutRangeImage(image);
+                       const std::string& title, const PictureExtras& extras) {
+  const RangeImageLayout layout = LayOutRangeImage(image, extras.range_image_width);
   cv::Mat canvas(layout.canvas, CV_8UC3, kBackground);
   DrawText(&canvas, title, {kBorder, kBorder}, kTextColour);
   if (image.grid().size() == 0) {
@@ -252,11 +279,14 @@ cv::Mat DrawRangeImage(const RangeImage& image, const std::vector<DrawnObject>& 
   const DepthBuffer scene = SceneDepth(image, layout);
   for (const DrawnObject& object : objects)
     if (object.model != nullptr) PaintSurface(image, layout, scene, object, &canvas);
+  DrawOutlines(image, layout, extras.outlines, &canvas);
+  DrawPoints(image, layout, extras.points, &canvas);
 
   LabelPlacer placer(layout.area);
   std::vector<cv::Rect> boxes;
   for (const DrawnObject& object : objects) {
-    boxes.push_back(DrawBox(image, layout, object, &canvas));
+    boxes.push_back(
+        DrawBox(image, layout, object, {{4, kDark}, {2, ToScalar(object.colour)}}, &canvas));
     placer.AddObstacle(boxes.back());
   }
   for (std::size_t i = 0; i < objects.size(); ++i)

@@ -143,29 +143,61 @@ void PaintPoints(const RangeImage& image, const TopViewLayout& layout, cv::Mat* 
 }
 
 void PaintSurface(const TopViewLayout& layout, const DrawnObject& object, cv::Mat* canvas) {
-  constexpr double kOpacity = 0.6;
+  const double opacity = object.is_provisional ? 0.3 : 0.6;
   for (const Eigen::Vector3f& point : object.model->points) {
     const cv::Point p(layout.ToCanvas(object.detection.T_local_object * point.cast<double>()));
     if (layout.area.contains(p))
-      canvas->at<Colour>(p) = Blend(canvas->at<Colour>(p), object.colour, kOpacity);
+      canvas->at<Colour>(p) = Blend(canvas->at<Colour>(p), object.colour, opacity);
+  }
+}
+
+// Of the box seen from above, tilted or not.
+std::vector<cv::Point> Outline(const TopViewLayout& layout, const DrawnObject& object) {
+  std::vector<cv::Point> corners;
+  for (const Eigen::Vector3d& corner : BoxCorners(object.detection))
+    corners.push_back(cv::Point(layout.ToCanvas(corner)));
+  std::vector<cv::Point> outline;
+  cv::convexHull(corners, outline);
+  return outline;
+}
+
+void DrawDashed(const std::vector<cv::Point>& outline, const cv::Scalar& colour, cv::Mat* canvas) {
+  constexpr double kDash = 6.0;  // canvas pixels
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const cv::Point2d from = outline[i];
+    const cv::Point2d side = cv::Point2d(outline[(i + 1) % outline.size()]) - from;
+    const int count = std::max(1, static_cast<int>(std::min(cv::norm(side) / kDash, 1000.0)));
+    for (int dash = 0; dash < count; dash += 2)
+      cv::line(*canvas, from + side * (1.0 * dash / count),
+               from + side * (1.0 * (dash + 1) / count), colour, 2, cv::LINE_AA);
+  }
+}
+
+void DrawOutlines(const TopViewLayout& layout, const std::vector<DrawnObject>& objects,
+                  cv::Mat* canvas) {
+  cv::Mat area = (*canvas)(layout.area);  // clips
+  for (const DrawnObject& object : objects) {
+    std::vector<cv::Point> outline = Outline(layout, object);
+    for (cv::Point& p : outline) p -= layout.area.tl();
+    cv::polylines(area, outline, true, ToScalar(object.colour), 1, cv::LINE_AA);
   }
 }
 
 // Draws outline and heading; returns the rectangle round it.
 cv::Rect DrawFootprint(const TopViewLayout& layout, const DrawnObject& object, cv::Mat* canvas) {
-  std::vector<cv::Point> corners;
-  for (const Eigen::Vector3d& corner : BoxCorners(object.detection))
-    corners.push_back(cv::Point(layout.ToCanvas(corner)));
-  std::vector<cv::Point> outline;  // also of tilted boxes
-  cv::convexHull(corners, outline);
+  const std::vector<cv::Point> outline = Outline(layout, object);
   const cv::Scalar colour = ToScalar(object.colour);
   const Eigen::Isometry3d& T_local_object = object.detection.T_local_object;
   const Eigen::Vector3d front(object.detection.box_max.x(), 0.0, 0.0);
-  cv::polylines(*canvas, outline, true, colour, 2, cv::LINE_AA);
+  if (object.is_provisional) {
+    DrawDashed(outline, colour, canvas);
+  } else {
+    cv::polylines(*canvas, outline, true, colour, 2, cv::LINE_AA);
+  }
   cv::arrowedLine(*canvas, cv::Point(layout.ToCanvas(T_local_object.translation())),
                   cv::Point(layout.ToCanvas(T_local_object * (1.4 * front))), colour, 2,
                   cv::LINE_AA, 0, 0.25);
-  return cv::boundingRect(corners);
+  return cv::boundingRect(outline);
 }
 
 cv::Rect DrawSensor(const RangeImage& image, const TopViewLayout& layout, cv::Mat* canvas) {
@@ -183,16 +215,16 @@ cv::Rect DrawSensor(const RangeImage& image, const TopViewLayout& layout, cv::Ma
 
 }  // namespace
 
-TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects) {
+TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObject>& objects,
+                            int side) {
   constexpr double kMargin = 0.5;        // m round what is shown
-  constexpr double kMaxSide = 960.0;     // canvas pixels
   constexpr double kMinWidth = 520.0;    // canvas pixels: room for the title and labels
   constexpr double kMinHeight = 240.0;   // canvas pixels
   constexpr double kMaxDensity = 200.0;  // canvas pixels a metre
   const Extent extent = FindExtent(image, objects);
   const Eigen::Vector2d size = extent.max - extent.min + Eigen::Vector2d::Constant(2.0 * kMargin);
   TopViewLayout layout;
-  layout.pixels_per_metre = std::min(kMaxDensity, kMaxSide / size.maxCoeff());
+  layout.pixels_per_metre = std::min(kMaxDensity, side / size.maxCoeff());
   const double width = std::max(kMinWidth, size.y() * layout.pixels_per_metre);
   const double height = std::max(kMinHeight, size.x() * layout.pixels_per_metre);
   layout.max_x = 0.5 * (extent.max.x() + extent.min.x()) + 0.5 * height / layout.pixels_per_metre;
@@ -204,19 +236,19 @@ TopViewLayout LayOutTopView(const RangeImage& image, const std::vector<DrawnObje
 }
 
 cv::Mat DrawTopView(const RangeImage& image, const std::vector<DrawnObject>& all_objects,
-                    const std::string& title) {
+                    const std::string& title, const PictureExtras& extras) {
   const std::vector<DrawnObject> objects = NearObjects(image, all_objects);
-  const TopViewLayout layout = LayOutTopView(image, objects);
+  const TopViewLayout layout = LayOutTopView(image, objects, extras.top_view_side);
   cv::Mat canvas(layout.canvas, CV_8UC3, kBackground);
   canvas(layout.area).setTo(kAreaColour);
   DrawText(&canvas, title, {kBorder, kBorder}, kTextColour);
-  DrawText(&canvas,
-           "from above: x [m] up, y [m] left, local frame; arrows point along the objects' x",
+  DrawText(&canvas, "from above: x [m] up, y [m] left, local frame; arrows: the objects' x",
            {kBorder, layout.area.br().y + 26}, kTextColour);
   DrawGrid(layout, &canvas);
   PaintPoints(image, layout, &canvas);
   for (const DrawnObject& object : objects)
     if (object.model != nullptr) PaintSurface(layout, object, &canvas);
+  DrawOutlines(layout, NearObjects(image, extras.outlines), &canvas);
 
   LabelPlacer placer(layout.area);
   const cv::Rect sensor = DrawSensor(image, layout, &canvas);
