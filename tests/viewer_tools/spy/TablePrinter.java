@@ -1,8 +1,20 @@
-import java.awt.Container;
 import java.awt.Component;
+import java.awt.Container;
+import java.awt.Dimension;
 import java.awt.Frame;
+import java.awt.Point;
+import java.awt.Rectangle;
+import java.awt.Robot;
+import java.awt.Toolkit;
+import java.awt.event.InputEvent;
 import java.awt.image.BufferedImage;
 import java.io.File;
+import java.nio.file.Files;
+import java.nio.file.Path;
+import java.nio.file.StandardCopyOption;
+import java.util.Arrays;
+import java.util.LinkedHashSet;
+import java.util.Set;
 import javax.imageio.ImageIO;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
@@ -14,7 +26,9 @@ import lcm.spy.SpyPlugin;
 
 /**
  * A plugin through which a test sees what lcm-spy shows: prints the channel table twice a second, a
- * line "ROW channel type undecodable" each. Where SPY_SCREENSHOT names a file it also draws the window into it.
+ * line "ROW channel type undecodable" each, and the other windows, "WINDOW title". Double-clicks the channels
+ * that SPY_OPEN lists, comma between, with the mouse, and moves each window that opens out of the way. Where
+ * SPY_SCREENSHOT names a file the whole screen is written into it after every round.
  */
 public class TablePrinter implements SpyPlugin {
   public TablePrinter() {
@@ -33,11 +47,21 @@ public class TablePrinter implements SpyPlugin {
     return null;
   }
 
+  private static final Set<String> toOpen = new LinkedHashSet<>(
+      Arrays.asList(System.getenv().getOrDefault("SPY_OPEN", "").split(",")));
+  // Where windows go, in the order in which they open, beside and below lcm-spy's own.
+  private static final Point[] PLACES = {
+    new Point(830, 0), new Point(0, 560), new Point(880, 560), new Point(660, 620)};
+
   private static void printForever() {
     try {
+      Robot robot = new Robot();
       while (true) {
         Thread.sleep(500);
         SwingUtilities.invokeAndWait(TablePrinter::printFrames);
+        openNext(robot);
+        String path = System.getenv("SPY_SCREENSHOT");
+        if (path != null) writeScreen(robot, path);
       }
     } catch (Exception exception) {
       exception.printStackTrace();
@@ -45,17 +69,58 @@ public class TablePrinter implements SpyPlugin {
   }
 
   private static void printFrames() {
+    int numWindows = 0;
     for (Frame frame : Frame.getFrames()) {
+      if (!frame.isVisible()) continue;
       JTable table = findTable(frame);
-      if (table == null) continue;
+      if (!frame.getTitle().equals("LCM Spy")) {
+        System.out.println("WINDOW " + frame.getTitle());
+        frame.setLocation(PLACES[Math.min(numWindows++, PLACES.length - 1)]);
+        continue;
+      }
+      frame.setBounds(0, 0, 820, 540);
+      frame.validate();
       TableModel model = table.getModel();
       int undecodable = model.getColumnCount() - 1;
       for (int row = 0; row < model.getRowCount(); ++row)
         System.out.println("ROW " + model.getValueAt(row, 0) + " " + model.getValueAt(row, 1) + " "
             + model.getValueAt(row, undecodable));
-      draw(frame);
     }
     System.out.flush();
+  }
+
+  /** Double-clicks the first channel that is still to be opened and in the table. */
+  private static void openNext(Robot robot) throws Exception {
+    Point[] place = new Point[1];
+    SwingUtilities.invokeAndWait(() -> place[0] = findNext());
+    if (place[0] == null) return;
+    robot.mouseMove(place[0].x, place[0].y);
+    for (int i = 0; i < 2; ++i) {
+      robot.mousePress(InputEvent.BUTTON1_DOWN_MASK);
+      robot.mouseRelease(InputEvent.BUTTON1_DOWN_MASK);
+    }
+  }
+
+  private static Point findNext() {
+    for (Frame frame : Frame.getFrames()) {
+      JTable table = frame.getTitle().equals("LCM Spy") ? findTable(frame) : null;
+      if (table == null || !table.isShowing()) continue;
+      for (int row = 0; row < table.getRowCount(); ++row) {
+        if (!toOpen.remove(String.valueOf(table.getValueAt(row, 0)))) continue;
+        Rectangle cell = table.getCellRect(row, 0, true);
+        Point corner = table.getLocationOnScreen();
+        return new Point(corner.x + cell.x + cell.width / 2, corner.y + cell.y + cell.height / 2);
+      }
+    }
+    return null;
+  }
+
+  private static void writeScreen(Robot robot, String path) throws Exception {
+    Dimension size = Toolkit.getDefaultToolkit().getScreenSize();
+    BufferedImage image = robot.createScreenCapture(new Rectangle(size));
+    File half = new File(path + ".half");
+    ImageIO.write(image, "png", half);
+    Files.move(half.toPath(), Path.of(path), StandardCopyOption.REPLACE_EXISTING);
   }
 
   private static JTable findTable(Container container) {
@@ -67,18 +132,5 @@ public class TablePrinter implements SpyPlugin {
       }
     }
     return null;
-  }
-
-  private static void draw(Frame frame) {
-    String path = System.getenv("SPY_SCREENSHOT");
-    if (path == null || frame.getWidth() == 0) return;
-    BufferedImage image =
-        new BufferedImage(frame.getWidth(), frame.getHeight(), BufferedImage.TYPE_INT_RGB);
-    frame.paint(image.getGraphics());
-    try {
-      ImageIO.write(image, "png", new File(path));
-    } catch (java.io.IOException exception) {
-      exception.printStackTrace();
-    }
   }
 }
