@@ -13,6 +13,7 @@ import java.nio.file.Files;
 import java.nio.file.Path;
 import java.nio.file.StandardCopyOption;
 import java.util.Arrays;
+import java.util.HashSet;
 import java.util.LinkedHashSet;
 import java.util.Set;
 import javax.imageio.ImageIO;
@@ -26,7 +27,7 @@ import lcm.spy.SpyPlugin;
 
 /**
  * A plugin through which a test sees what lcm-spy shows: prints the channel table twice a second, a
- * line "ROW channel type undecodable" each, and the other windows, "WINDOW title". Double-clicks the channels
+ * line "ROW channel type undecodable" each, and the other windows, "WINDOW title drawn" or "blank". Double-clicks the channels
  * that SPY_OPEN lists, comma between, with the mouse, and moves each window that opens out of the way. Where
  * SPY_SCREENSHOT names a file the whole screen is written into it after every round.
  */
@@ -74,7 +75,7 @@ public class TablePrinter implements SpyPlugin {
       if (!frame.isVisible()) continue;
       JTable table = findTable(frame);
       if (!frame.getTitle().equals("LCM Spy")) {
-        System.out.println("WINDOW " + frame.getTitle());
+        System.out.println("WINDOW " + frame.getTitle() + (countColours(frame) > 4 ? " drawn" : " blank"));
         frame.setLocation(PLACES[Math.min(numWindows++, PLACES.length - 1)]);
         continue;
       }
@@ -87,6 +88,16 @@ public class TablePrinter implements SpyPlugin {
             + model.getValueAt(row, undecodable));
     }
     System.out.flush();
+  }
+
+  private static int countColours(Frame frame) {
+    BufferedImage image =
+        new BufferedImage(frame.getWidth(), frame.getHeight(), BufferedImage.TYPE_INT_RGB);
+    frame.paint(image.getGraphics());
+    Set<Integer> colours = new HashSet<>();
+    for (int y = 0; y < image.getHeight(); ++y)
+      for (int x = 0; x < image.getWidth(); ++x) colours.add(image.getRGB(x, y));
+    return colours.size();
   }
 
   /** Double-clicks the first channel that is still to be opened and in the table. */

@@ -69,6 +69,10 @@ final class StatusView extends ChannelView {
     statuses.put(status.key(), status);
   }
 
+  synchronized int numProcesses() {
+    return statuses.size();
+  }
+
   private static Status read(byte[] bytes) throws BadMessage {
     MessageReader reader = new MessageReader(bytes, status_t.LCM_FINGERPRINT);
     Status status = new Status();
