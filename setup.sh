@@ -8,12 +8,13 @@ packages=(
   g++ make cmake pkg-config git
   # libraries
   libeigen3-dev libnanoflann-dev libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
+  libopencv-highgui-dev
   libembree-dev libcli11-dev libspdlog-dev libyaml-cpp-dev nlohmann-json3-dev
   zlib1g-dev liblzf-dev
   # LCM and its viewers
   liblcm-dev libglib2.0-dev liblcm-bin liblcm-java libjchart2d-java openjdk-17-jdk-headless openjdk-17-jre
   # tests and demo
-  libgtest-dev libbenchmark-dev iproute2 nftables libfaketime util-linux xvfb
+  libgtest-dev libbenchmark-dev iproute2 nftables libfaketime util-linux xvfb xdotool
 )
 checks=(clang clang-format clang-tidy libclang-rt-dev ccache valgrind)
 

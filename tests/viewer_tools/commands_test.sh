@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command lines of rimod-show, rimod-top, rimod-snapshot and rimod-report: exit codes, clear words, nothing on stdout but
+# The command lines of rimod-show, rimod-top, rimod-snapshot, rimod-view, rimod-meldis and rimod-report: exit codes, clear words, nothing on stdout but
 # results.
 #   commands_test.sh BIN LOG
 set -u
@@ -74,6 +74,22 @@ check "snapshot: missing scan" 1 "$work/y.pcd" "$snapshot" --models "$work/none"
   --output "$work/out" --scan "$work/y.pcd" --detections "$work/nothing.jsonl"
 check "snapshot: output is a file" 1 "x.pcd" "$snapshot" --models "$work/none" \
   --output "$work/x.pcd" --scan "$work/x.pcd" --detections "$work/nothing.jsonl"
+
+view=$bin/rimod-view
+check "view: unknown option" 2 "nonsense" "$view" --nonsense
+check "view: unknown layer" 2 "nonsense" "$view" --layers points,nonsense --output "$work/out" "$log"
+check "view: no screen" 1 "DISPLAY is not set" env -u DISPLAY -u WAYLAND_DISPLAY "$view" "$log"
+check "view: a screen that is not there" 1 "no window" env DISPLAY=:4711 QT_QPA_PLATFORM=xcb "$view" "$log"
+check "view: missing log" 1 "$work/missing" "$view" --output "$work/out" "$work/missing"
+check "view: truncated log" 1 "truncated.lcm" "$view" --output "$work/out" "$work/truncated.lcm"
+check "view: no log at all" 1 "zeros.lcm" "$view" --output "$work/out" "$work/zeros.lcm"
+check "view: missing models" 1 "$work/missing" "$view" --models "$work/missing" --output "$work/out" "$log"
+check "view: broken model" 1 "broken.rimod" "$view" --models "$work/models" --output "$work/out" "$work/x.pcd"
+check "view: output is a file" 1 "x.pcd" "$view" --output "$work/x.pcd" "$log"
+check "view: pictures of a log" 0 "" "$view" --output "$work/view" "$log"
+[ "$(cat "$work/stdout")" = "$work/view/$(basename "$log" .lcm).png" ] && [ -s "$(cat "$work/stdout")" ] ||
+  { echo "FAILED: view: printed"; cat "$work/stdout"; failures=$((failures + 1)); }
+check "meldis: unknown option" 2 "nonsense" "$bin/rimod-meldis" --nonsense
 
 report=$bin/rimod-report
 mkdir "$work/recordings"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Starts rimod-spy on a screen of its own (Xvfb) and a live network of its own (unshare), publishes on
-# every channel, and checks that lcm-spy names the type of each and decodes all. Exit code 77: cannot run here.
+# every channel, and checks that lcm-spy names the type of each and decodes all, and that a double click on
+# three of them opens a window that draws. Exit code 77: cannot run here.
 #   spy_test.sh RIMOD_SPY PUBLISHER PLUGIN_JAR
 set -u
 spy=$1 publisher=$2 plugin=$3
@@ -29,7 +30,7 @@ pids+=($!)
 for _ in $(seq 100); do [ -s "$work/display" ] && break; sleep 0.1; done
 [ -s "$work/display" ] || { echo "Xvfb did not start:"; cat "$work/xvfb.log"; exit 1; }
 
-DISPLAY=:$(cat "$work/display") CLASSPATH=$plugin "$spy" >"$work/spy.log" 2>&1 &
+SPY_OPEN=RIMOD_RANGE_IMAGE,RIMOD_DETECTIONS,RIMOD_STATUS DISPLAY=:$(cat "$work/display") CLASSPATH=$plugin "$spy" >"$work/spy.log" 2>&1 &
 pids+=($!)
 "$publisher" >/dev/null 2>&1 &
 pids+=($!)
@@ -42,7 +43,10 @@ ROW RIMOD_FEATURES feature_set_t 0
 ROW RIMOD_MODEL object_model_t 0
 ROW RIMOD_HYPOTHESES pose_hypotheses_t 0
 ROW RIMOD_DETECTIONS detections_t 0
-ROW RIMOD_STATUS status_t 0'
+ROW RIMOD_STATUS status_t 0
+WINDOW RIMOD_RANGE_IMAGE: range image drawn
+WINDOW RIMOD_DETECTIONS: detections drawn
+WINDOW RIMOD_STATUS: status drawn'
 
 missing() {
   while IFS= read -r row; do grep -qxF -- "$row" "$work/spy.log" || echo "$row"; done <<<"$expected"
@@ -57,4 +61,8 @@ if [ -n "$(missing)" ]; then
   echo "its output:"; sort -u "$work/spy.log"
   exit 1
 fi
-echo "lcm-spy decodes all $(wc -l <<<"$expected") channels"
+if grep -q "Exception" "$work/spy.log"; then
+  echo "exceptions:"; grep -A 5 "Exception" "$work/spy.log"
+  exit 1
+fi
+echo "lcm-spy decodes all channels, and draws three"
