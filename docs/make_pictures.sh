@@ -47,7 +47,10 @@ public class Shot {
   public static void main(String[] arguments) throws Exception {
     int width = Integer.parseInt(arguments[1]), height = Integer.parseInt(arguments[2]);
     Robot robot = new Robot();
-    robot.mouseMove(Integer.parseInt(arguments[3]), Integer.parseInt(arguments[4]));
+    int x = Integer.parseInt(arguments[3]), y = Integer.parseInt(arguments[4]);
+    robot.mouseMove(x - 5, y); // enters the window
+    Thread.sleep(500);
+    robot.mouseMove(x, y);
     Thread.sleep(2000);
     Rectangle part = new Rectangle(width, height);
     ImageIO.write(robot.createScreenCapture(part), "png", new File(arguments[0]));
@@ -55,20 +58,31 @@ public class Shot {
 }
 END
 
+record=$work/recorded.lcm
+lcm-logger --quiet "$record" & pids+=($!)
 "$bin/rimod-assembler" --early & pids+=($!)
 "$bin/rimod-extractor" & pids+=($!)
 "$bin/rimod-matcher" --models "$work/models" & pids+=($!)
 "$bin/rimod-show" live --await rimod-assembler --await rimod-extractor --await rimod-matcher --timeout 60
+start_screen 1546x694
+"$bin/rimod-view" --models "$work/models" 2>/dev/null & pids+=($!)
+"$bin/rimod-show" live --count 1 --timeout 120 & show=$!
+lcm-logplayer logs/office.lcm >/dev/null
+wait $show
+sleep 3  # until everything is drawn
+java "$work/Shot.java" "$work/view_window.png" 1546 694 400 280
+kill "${pids[@]}"
+wait "${pids[@]}" || true
+pids=()
 
+# A window opens on the first pass and hears the second.
 start_screen 1780x1200
 SPY_OPEN=RIMOD_RANGE_IMAGE,RIMOD_DETECTIONS,RIMOD_STATUS SPY_SCREENSHOT=$work/spy.png \
   CLASSPATH=$plugin "$bin/rimod-spy" >/dev/null 2>&1 &
 pids+=($!)
-start_screen 1546x694
-"$bin/rimod-view" --models "$work/models" 2>/dev/null & pids+=($!)
-for _ in 1 2; do lcm-logplayer logs/office.lcm >/dev/null; done
-sleep 4  # until everything is drawn
-java "$work/Shot.java" "$work/view_window.png" 1546 694 395 270
+sleep 5
+for _ in 1 2; do lcm-logplayer "$record" >/dev/null; done
+sleep 4
 "$bin/rimod-view" --models "$work/models" --output "$work" logs/office.lcm >/dev/null
 mv "$work/office.png" docs/images/view.png
 mv "$work/view_window.png" "$work/spy.png" docs/images/

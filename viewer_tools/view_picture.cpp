@@ -125,7 +125,10 @@ class ViewContents {
       text += Format("%zu objects found, %d models looked for", scan_.detections->detections.size(),
                      scan_.detections->num_models);
     } else if (scan_.early) {
-      text += Format("the sweep goes on: %zu objects told so far", scan_.early->objects.size());
+      const auto num_told = std::count_if(
+          scan_.early->objects.begin(), scan_.early->objects.end(),
+          [](const EarlyObject& object) { return object.status != EarlyStatus::kWithdrawn; });
+      text += Format("the sweep goes on: %td objects told so far", num_told);
     } else {
       text += "no detections yet";
     }

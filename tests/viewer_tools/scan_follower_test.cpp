@@ -107,6 +107,7 @@ TEST_F(ScanFollowerTest, WhatIsToldEarlyStaysUntilTheScanSaysMore) {
 TEST_F(ScanFollowerTest, AScanSentOnceMoreForgetsWhatWasFoundInTheShorterOne) {
   SendImage(7);
   SendDetections(7);
+  now_ += std::chrono::seconds(1);
   SendImage(7);
   EXPECT_FALSE(follower_.newest()->detections);
 }

@@ -42,7 +42,7 @@ ObjectModel MakePlate() {
   model.point_spacing = 0.02;
   for (int i = 0; i < 21; ++i) {
     for (int j = 0; j < 21; ++j) {
-      model.points.emplace_back(0.0f, -0.2f + 0.02f * i, 0.02f * j);
+      model.points.push_back(Eigen::Vector3d(0.0, -0.2 + 0.02 * i, 0.02 * j).cast<float>());
       model.normals.emplace_back(-1.0f, 0.0f, 0.0f);
     }
   }

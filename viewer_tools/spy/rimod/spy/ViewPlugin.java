@@ -1,10 +1,13 @@
 package rimod.spy;
 
 import java.awt.event.ActionEvent;
+import java.io.IOException;
 import java.util.function.Function;
 import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
+import lcm.lcm.LCMDataOutputStream;
+import lcm.lcm.LCMEncodable;
 import lcm.spy.ChannelData;
 
 /**
@@ -32,8 +35,22 @@ abstract class ViewPlugin {
 
       @Override
       public void actionPerformed(ActionEvent event) {
-        ViewWindow.open(desktop, channel.name + ": " + name, makeView.apply(channel.name));
+        ChannelView view = makeView.apply(channel.name);
+        giveLast(channel, view);
+        ViewWindow.open(desktop, channel.name + ": " + name, view);
       }
     };
+  }
+
+  /** What lcm-spy heard last, so that the window need not wait for more. */
+  private static void giveLast(ChannelData channel, ChannelView view) {
+    if (!(channel.last instanceof LCMEncodable)) return;
+    LCMDataOutputStream bytes = new LCMDataOutputStream();
+    try {
+      ((LCMEncodable) channel.last).encode(bytes);
+    } catch (IOException | RuntimeException exception) {
+      return; // a message that does not even encode is not worth showing
+    }
+    view.receive(channel.name, bytes.toByteArray());
   }
 }
