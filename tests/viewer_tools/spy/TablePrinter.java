@@ -52,7 +52,7 @@ public class TablePrinter implements SpyPlugin {
       Arrays.asList(System.getenv().getOrDefault("SPY_OPEN", "").split(",")));
   // Where windows go, in the order in which they open, beside and below lcm-spy's own.
   private static final Point[] PLACES = {
-    new Point(830, 0), new Point(0, 560), new Point(880, 560), new Point(660, 620)};
+    new Point(830, 0), new Point(0, 560), new Point(950, 560), new Point(660, 620)};
 
   private static void printForever() {
     try {

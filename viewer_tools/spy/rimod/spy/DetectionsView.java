@@ -69,9 +69,14 @@ final class DetectionsView extends ChannelView {
     paintGrid(g);
     paintSensor(g);
     List<String> names = new ArrayList<>(new TreeSet<>(namesOf(near)));
-    List<Rectangle> labels = new ArrayList<>();
     for (FoundObject object : near)
-      paintObject(g, object, Palette.object(names.indexOf(object.name)), labels);
+      paintObject(g, object, Palette.object(names.indexOf(object.name)));
+    List<Rectangle> taken = new ArrayList<>(); // first the objects, then also labels
+    for (FoundObject object : near) taken.add(outline(object));
+    for (int i = 0; i < near.size(); ++i) {
+      g.setColor(Palette.object(names.indexOf(near.get(i).name)));
+      paintLabel(g, near.get(i), taken, i);
+    }
   }
 
   private String title() {
@@ -147,8 +152,7 @@ final class DetectionsView extends ChannelView {
     g.drawString("sensor", (float) toU(found.sensor[1]) + 14, (float) toV(found.sensor[0]) + 6);
   }
 
-  private void paintObject(
-      Graphics2D g, FoundObject object, Color colour, List<Rectangle> labels) {
+  private void paintObject(Graphics2D g, FoundObject object, Color colour) {
     double[][] corners = object.corners();
     g.setColor(colour);
     g.setStroke(stroke());
@@ -159,7 +163,16 @@ final class DetectionsView extends ChannelView {
     }
     g.setStroke(new BasicStroke(2));
     line(g, object.place(0, 0, 0), object.front());
-    paintLabel(g, object, corners, labels);
+  }
+
+  /** The rectangle round an object, pixels. */
+  private Rectangle outline(FoundObject object) {
+    Rectangle outline = null;
+    for (double[] corner : object.corners()) {
+      Rectangle point = new Rectangle((int) toU(corner[1]), (int) toV(corner[0]), 1, 1);
+      outline = outline == null ? point : outline.union(point);
+    }
+    return outline;
   }
 
   private BasicStroke stroke() {
@@ -173,18 +186,16 @@ final class DetectionsView extends ChannelView {
     g.drawLine((int) toU(a[1]), (int) toV(a[0]), (int) toU(b[1]), (int) toV(b[0]));
   }
 
-  /** Above the object, or higher where another label stands. */
-  private void paintLabel(
-      Graphics2D g, FoundObject object, double[][] corners, List<Rectangle> labels) {
-    double top = Double.POSITIVE_INFINITY;
-    for (double[] corner : corners) top = Math.min(top, toV(corner[0]));
+  /** Above the object taken.get(own), or higher where another object or label stands. */
+  private void paintLabel(Graphics2D g, FoundObject object, List<Rectangle> taken, int own) {
+    Rectangle outline = taken.get(own);
     int width = g.getFontMetrics().stringWidth(object.label()) + 8;
-    int x = (int) toU(object.position[1]) - width / 2;
+    int x = (int) outline.getCenterX() - width / 2;
     x = Math.max(area.x, Math.min(x, area.x + area.width - width));
-    Rectangle place = new Rectangle(x, Math.max((int) top - 24, area.y), width, 19);
-    for (int tries = 0; tries < 20 && hitsAny(place, labels); ++tries) place.y -= 21;
+    Rectangle place = new Rectangle(x, Math.max(outline.y - 24, area.y), width, 19);
+    for (int tries = 0; tries < 40 && hitsAny(place, taken, own); ++tries) place.y -= 5;
     place.y = Math.max(place.y, area.y);
-    labels.add(place);
+    taken.add(place);
     g.setStroke(new BasicStroke(1));
     Color colour = g.getColor();
     g.setColor(new Color(16, 16, 16));
@@ -194,8 +205,9 @@ final class DetectionsView extends ChannelView {
     g.drawString(object.label(), place.x + 4, place.y + 14);
   }
 
-  private static boolean hitsAny(Rectangle place, List<Rectangle> labels) {
-    for (Rectangle label : labels) if (label.intersects(place)) return true;
+  private static boolean hitsAny(Rectangle place, List<Rectangle> taken, int own) {
+    for (int i = 0; i < taken.size(); ++i)
+      if (i != own && taken.get(i).intersects(place)) return true;
     return false;
   }
 }

@@ -37,9 +37,10 @@ final class StatusView extends ChannelView {
   StatusView(String channel) {
     super(860, 480);
     this.channel = channel;
+    JTable upper = new JTable(processes);
+    upper.getColumnModel().getColumn(0).setPreferredWidth(130); // names are long
     JSplitPane tables = new JSplitPane(
-        JSplitPane.VERTICAL_SPLIT, new JScrollPane(new JTable(processes)),
-        new JScrollPane(new JTable(stages)));
+        JSplitPane.VERTICAL_SPLIT, new JScrollPane(upper), new JScrollPane(new JTable(stages)));
     tables.setDividerLocation(150);
     add(title, BorderLayout.NORTH);
     add(tables, BorderLayout.CENTER);
