@@ -75,7 +75,7 @@ public class TablePrinter implements SpyPlugin {
       if (!frame.isVisible()) continue;
       JTable table = findTable(frame);
       if (!frame.getTitle().equals("LCM Spy")) {
-        System.out.println("WINDOW " + frame.getTitle() + (countColours(frame) > 4 ? " drawn" : " blank"));
+        System.out.println("WINDOW " + frame.getTitle() + (isDrawn(frame, table) ? " drawn" : " blank"));
         frame.setLocation(PLACES[Math.min(numWindows++, PLACES.length - 1)]);
         continue;
       }
@@ -88,6 +88,11 @@ public class TablePrinter implements SpyPlugin {
             + model.getValueAt(row, undecodable));
     }
     System.out.flush();
+  }
+
+  /** A table has lines, a picture many colours. */
+  private static boolean isDrawn(Frame frame, JTable table) {
+    return table == null ? countColours(frame) > 4 : table.getRowCount() > 0;
   }
 
   private static int countColours(Frame frame) {
