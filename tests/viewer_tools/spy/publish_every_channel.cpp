@@ -1,6 +1,6 @@
 // Publishes on each of rimod's channels, ten times a second, until it is ended or 60 seconds are
-// over: a range image in several sections, detections and a status, and of each other type a message
-// without content.
+// over: a range image in several sections, detections and a status, and of each other type a
+// message without content.
 #include <chrono>
 #include <lcm/lcm-cpp.hpp>
 #include <thread>
