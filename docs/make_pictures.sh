@@ -76,7 +76,7 @@ wait "${pids[@]}" || true
 pids=()
 
 # A window opens on the first pass and hears the second.
-start_screen 1780x1200
+start_screen 1900x1200
 SPY_OPEN=RIMOD_RANGE_IMAGE,RIMOD_DETECTIONS,RIMOD_STATUS SPY_SCREENSHOT=$work/spy.png \
   CLASSPATH=$plugin "$bin/rimod-spy" >/dev/null 2>&1 &
 pids+=($!)
