@@ -71,9 +71,8 @@ EarlyObjectsFromMessage FromMessage(const early_detections_t& message) {
     }
     if (!(item.unseen_share >= 0.0 && item.unseen_share <= 1.0))
       return {std::nullopt, "a share is not within 0 .. 1"};
-    early.objects.push_back({item.id, static_cast<EarlyStatus>(item.status),
-                             Time(item.first_utime), item.unseen_share,
-                             std::move(*converted.detection)});
+    early.objects.push_back({item.id, static_cast<EarlyStatus>(item.status), Time(item.first_utime),
+                             item.unseen_share, std::move(*converted.detection)});
   }
   return {std::move(early), ""};
 }

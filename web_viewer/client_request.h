@@ -21,10 +21,10 @@ struct ClientRequest {
     kPlayer   // moves the log
   };
   Kind kind = Kind::kShown;
-  std::int64_t id = 0;                                // kChoose
-  std::string name;                                   // kModel
-  PlayerCommand command = PlayerCommand::kPlay;       // kPlayer
-  double speed = 1.0;                                 // kSpeed: times as fast as recorded
+  std::int64_t id = 0;                           // kChoose
+  std::string name;                              // kModel
+  PlayerCommand command = PlayerCommand::kPlay;  // kPlayer
+  double speed = 1.0;                            // kSpeed: times as fast as recorded
 };
 
 constexpr std::size_t kMaxRequestBytes = 1000;

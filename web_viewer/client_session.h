@@ -12,9 +12,9 @@
 
 namespace rimod {
 
-// One page's side of the conversation. A frame goes out only when the page has shown the one before,
-// and what goes out is chosen at that moment: a slow page gets fewer frames, none of them stale, and
-// nothing queues up for it.
+// One page's side of the conversation. A frame goes out only when the page has shown the one
+// before, and what goes out is chosen at that moment: a slow page gets fewer frames, none of them
+// stale, and nothing queues up for it.
 class ClientSession {
  public:
   explicit ClientSession(const WebContent* content) : content_(content) {}
@@ -35,7 +35,7 @@ class ClientSession {
   const WebContent* content_;
   bool under_way_ = false;  // a frame that is not shown yet
   bool greeted_ = false;
-  std::optional<std::int64_t> chosen_;                       // id; none: the newest
+  std::optional<std::int64_t> chosen_;                                // id; none: the newest
   std::array<std::int64_t, kNumKinds> versions_{-1, -1, -1, -1, -1};  // as last sent
   std::set<std::string> wanted_models_;  // that are known, not sent yet
   std::size_t next_kind_ = kScan;

@@ -36,8 +36,7 @@ LogSummary SummariseLog(const std::string& path, const Channels& channels) {
     summary.end = std::max(summary.end, event->utime);
     has_laser |= event->channel == channels.laser;
     has_poses |= event->channel == channels.laser_to_local;
-    summary.has_scans |=
-        event->channel == channels.scan || event->channel == channels.range_image;
+    summary.has_scans |= event->channel == channels.scan || event->channel == channels.range_image;
     summary.has_detections |= event->channel == channels.detections;
   }
   summary.has_lines = has_laser && has_poses;

@@ -20,12 +20,12 @@ namespace rimod {
 
 // What a log holds, as far as a player wants to know.
 struct LogSummary {
-  bool has_scans = false;       // or range images
-  bool has_lines = false;       // of a laser, with its poses
+  bool has_scans = false;  // or range images
+  bool has_lines = false;  // of a laser, with its poses
   bool has_detections = false;
-  std::int64_t begin = 0;       // us, clock of the logger
+  std::int64_t begin = 0;  // us, clock of the logger
   std::int64_t end = 0;
-  std::string error;            // what could not be read
+  std::string error;  // what could not be read
   bool can_be_shown() const { return has_scans || has_lines || has_detections; }
 };
 LogSummary SummariseLog(const std::string& path, const Channels& channels);

@@ -239,12 +239,11 @@ Frame ModelFrame(const ObjectModel& model) {
     normals.push_back('\0');
   }
   SteppedPoints stepped = StepPoints(points);
-  const Json header = {
-      {"type", "model"},
-      {"name", model.name},
-      {"box", {VectorJson(model.box_min), VectorJson(model.box_max)}},
-      {"spacing", model.point_spacing * std::sqrt(static_cast<double>(stride))},
-      {"points", std::move(stepped.header)}};
+  const Json header = {{"type", "model"},
+                       {"name", model.name},
+                       {"box", {VectorJson(model.box_min), VectorJson(model.box_max)}},
+                       {"spacing", model.point_spacing * std::sqrt(static_cast<double>(stride))},
+                       {"points", std::move(stepped.header)}};
   return FrameOf(header, {stepped.bytes, normals});
 }
 

@@ -14,9 +14,9 @@
 
 namespace rimod {
 
-// What the page is told, as binary frames: uint32 (little-endian) number of bytes of the header, the
-// header (JSON, padded with spaces so that what follows is at a multiple of 8), then the lists that
-// the header names, each at a multiple of 8. The header's "type" names the kind of frame.
+// What the page is told, as binary frames: uint32 (little-endian) number of bytes of the header,
+// the header (JSON, padded with spaces so that what follows is at a multiple of 8), then the lists
+// that the header names, each at a multiple of 8. The header's "type" names the kind of frame.
 // Shared by all clients, so never changed.
 using Frame = std::shared_ptr<const std::string>;
 

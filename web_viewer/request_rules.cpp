@@ -15,7 +15,8 @@ std::string Lowered(std::string text) {
 bool IsPort(const std::string& text) {
   constexpr std::size_t kMaxDigits = 5;
   return !text.empty() && text.size() <= kMaxDigits &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 // The name before the port; empty where this is no host.
@@ -28,8 +29,8 @@ std::string NameOf(const std::string& host) {
 
 // "http://name:80" and "http://name" are the same.
 std::string WithoutPort(const std::string& host, const std::string& port) {
-  const bool has_it = host.size() > port.size() &&
-                      host.compare(host.size() - port.size(), port.size(), port) == 0;
+  const bool has_it =
+      host.size() > port.size() && host.compare(host.size() - port.size(), port.size(), port) == 0;
   return has_it ? host.substr(0, host.size() - port.size()) : host;
 }
 

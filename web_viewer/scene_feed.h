@@ -15,8 +15,8 @@ namespace rimod {
 
 // What a message was good for.
 struct TakenMessage {
-  std::string error;             // the cause why it cannot be used; empty when it can
-  bool completed_scan = false;   // points came
+  std::string error;            // the cause why it cannot be used; empty when it can
+  bool completed_scan = false;  // points came
   bool has_detections = false;
 };
 

@@ -28,14 +28,17 @@ constexpr char kDescription[] =
     "Serves a page that shows the pipeline in 3D: the live scan, found objects, hypotheses, the\n"
     "sensor, and the scans before. Reads rimod.scan_t on RIMOD_SCAN (or rimod.range_image_t on\n"
     "RIMOD_RANGE_IMAGE), rimod.detections_t on RIMOD_DETECTIONS, rimod.pose_hypotheses_t on\n"
-    "RIMOD_HYPOTHESES and rimod.early_detections_t on RIMOD_DETECTIONS_EARLY, or all of these from a\n"
+    "RIMOD_HYPOTHESES and rimod.early_detections_t on RIMOD_DETECTIONS_EARLY, or all of these from "
+    "a\n"
     "log of lcm-logger. Of a log with laser lines but without detections it finds them itself.\n\n"
     "Examples: rimod-web --models models\n"
     "          rimod-web --models models recorded.lcm\n";
 
 constexpr char kFooter[] =
-    "Then open http://127.0.0.1:8086/ in a browser. From another machine: ssh -L 8086:localhost:8086 "
-    "HOST.\nExit codes: 0 done; 1 the page, the port, the log or the bus cannot be used; 2 bad usage.";
+    "Then open http://127.0.0.1:8086/ in a browser. From another machine: ssh -L "
+    "8086:localhost:8086 "
+    "HOST.\nExit codes: 0 done; 1 the page, the port, the log or the bus cannot be used; 2 bad "
+    "usage.";
 
 void AddServerOptions(CLI::App* app, WebServerOptions* server) {
   app->add_option("--port", server->port, "TCP port of the page; 0 for any that is free")
@@ -64,8 +67,9 @@ PageFiles LoadPage(const std::string& folder) {
       "rimod-web";
   PageFiles page = LoadPageFiles(folder.empty() ? beside.string() : folder);
   if (!page.error.empty() && folder.empty())
-    page.error += ": the page was not built, which needs npm and, once, the npm registry "
-                  "(./setup.sh --web); then build again";
+    page.error +=
+        ": the page was not built, which needs npm and, once, the npm registry "
+        "(./setup.sh --web); then build again";
   return page;
 }
 
@@ -134,7 +138,8 @@ int ServeLog(const WebOptions& options, PageFiles page, std::vector<ObjectModel>
   const LogSummary log = SummariseLog(options.log, *channels.channels);
   if (!log.error.empty()) spdlog::error("{}", log.error);
   if (!log.can_be_shown()) {
-    spdlog::error("{}: nothing that can be shown: no scans, laser lines or detections", options.log);
+    spdlog::error("{}: nothing that can be shown: no scans, laser lines or detections",
+                  options.log);
     return 1;
   }
   std::unique_ptr<ScanDetector> detector =

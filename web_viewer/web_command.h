@@ -17,11 +17,11 @@ struct WebOptions {
   CommonOptions common;
   BusOptions bus;
   WebServerOptions server;
-  std::string log;          // empty: live
-  double speed = 1.0;       // of the log
-  std::string models;       // folder; empty: objects are drawn as boxes
-  std::string page;         // folder; empty: beside the executable, as it was built
-  int num_threads = 0;      // of the detector, for logs without detections
+  std::string log;      // empty: live
+  double speed = 1.0;   // of the log
+  std::string models;   // folder; empty: objects are drawn as boxes
+  std::string page;     // folder; empty: beside the executable, as it was built
+  int num_threads = 0;  // of the detector, for logs without detections
   HistoryLimits history;
 };
 

@@ -11,13 +11,15 @@ void WebContent::OnChange(const std::function<void()>& on_change) {
 }
 
 void WebContent::SetPlayback(const Playback& playback) {
-  const nlohmann::ordered_json header = {
-      {"type", "playback"},          {"playing", playback.playing},
-      {"at_end", playback.at_end},   {"position", playback.position},
-      {"duration", playback.duration}, {"speed", playback.speed},
-      {"warning", playback.warning}};
-  Frame frame = MakeFrame(
-      header.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  const nlohmann::ordered_json header = {{"type", "playback"},
+                                         {"playing", playback.playing},
+                                         {"at_end", playback.at_end},
+                                         {"position", playback.position},
+                                         {"duration", playback.duration},
+                                         {"speed", playback.speed},
+                                         {"warning", playback.warning}};
+  Frame frame =
+      MakeFrame(header.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     playback_ = {playback_.version + 1, std::move(frame)};

@@ -1,7 +1,11 @@
 #include "web_viewer/web_server.h"
 
+#include <arpa/inet.h>
 #include <libwebsockets.h>
+#include <netinet/in.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -27,8 +31,12 @@ constexpr std::size_t kHeaderBytes = 2'048;  // of a reply, generously
 // Connections beside those of pages: files that are being loaded.
 constexpr int kFurtherConnections = 48;
 
-constexpr lws_retry_bo_t kLiveness = {nullptr, 0, 0, /*secs_since_valid_ping=*/20,
-                                      /*secs_since_valid_hangup=*/40, 0};
+constexpr lws_retry_bo_t kLiveness = {nullptr,
+                                      0,
+                                      0,
+                                      /*secs_since_valid_ping=*/20,
+                                      /*secs_since_valid_hangup=*/40,
+                                      0};
 
 std::string HeaderOf(lws* wsi, lws_token_indexes token) {
   const int length = lws_hdr_total_length(wsi, token);
@@ -36,6 +44,18 @@ std::string HeaderOf(lws* wsi, lws_token_indexes token) {
   std::vector<char> text(static_cast<std::size_t>(length) + 1);
   if (lws_hdr_copy(wsi, text.data(), length + 1, token) < 0) return "";
   return text.data();
+}
+
+// Throws for what is no address of this machine: libwebsockets would wait for it to become one.
+void CheckAddress(const std::string& text) {
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  if (inet_pton(AF_INET, text.c_str(), &address.sin_addr) != 1)
+    throw std::runtime_error("'" + text + "' is no IPv4 address");
+  const int probe = socket(AF_INET, SOCK_STREAM, 0);
+  const int bound = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
+  close(probe);
+  if (bound != 0) throw std::runtime_error("this machine does not have the address " + text);
 }
 
 // Bytes that go out piece by piece, behind the room that libwebsockets wants in front.
@@ -94,6 +114,7 @@ class WebServer::Connections {
         page_(std::move(page)),
         content_(content),
         on_command_(std::move(on_command)) {
+    CheckAddress(options_.address);
     lws_set_log_level(LLL_ERR, [](int, const char* line) {
       std::string text(line);
       while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -105,7 +126,7 @@ class WebServer::Connections {
     info.protocols = protocols_.data();
     info.user = this;
     info.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
-    info.timeout_secs = 10;      // to send a request
+    info.timeout_secs = 10;       // to send a request
     info.keepalive_timeout = 10;  // between requests
     info.fd_limit_per_thread =
         static_cast<unsigned int>(options_.max_clients + kFurtherConnections);
@@ -125,9 +146,7 @@ class WebServer::Connections {
   // From any thread: something has changed.
   void Wake() { lws_cancel_service(context_); }
 
-  int port() const {
-    return lws_get_vhost_listen_port(lws_get_vhost_by_name(context_, "default"));
-  }
+  int port() const { return lws_get_vhost_listen_port(lws_get_vhost_by_name(context_, "default")); }
   int num_clients() const { return num_clients_; }
   const WebServerCounters& counters() const { return counters_; }
 
@@ -331,8 +350,8 @@ class WebServer::Connections {
 
 WebServer::WebServer(const WebServerOptions& options, PageFiles page, WebContent* content,
                      OnCommand on_command)
-    : connections_(std::make_unique<Connections>(options, std::move(page), content,
-                                                 std::move(on_command))),
+    : connections_(
+          std::make_unique<Connections>(options, std::move(page), content, std::move(on_command))),
       content_(content) {
   content_->OnChange([this] { connections_->Wake(); });
   thread_ = std::thread([this] {

@@ -16,19 +16,20 @@
 namespace rimod {
 
 struct WebServerOptions {
-  std::string address = "127.0.0.1";   // of the network interface to listen on
-  int port = 8086;                     // 0: any that is free
-  std::vector<std::string> host_names;  // that pages may call it by, beside those of the machine itself
-  int max_clients = 16;                // pages at a time
+  std::string address = "127.0.0.1";  // IPv4, of the network interface to listen on
+  int port = 8086;                    // 0: any that is free
+  std::vector<std::string>
+      host_names;        // that pages may call it by, beside those of the machine itself
+  int max_clients = 16;  // pages at a time
 };
 
 // What the server refused so far. Counts only grow.
 struct WebServerCounters {
-  std::atomic<std::int64_t> clients{0};            // pages that came
-  std::atomic<std::int64_t> frames{0};             // sent
-  std::atomic<std::int64_t> foreign_requests{0};   // another Host or Origin
+  std::atomic<std::int64_t> clients{0};           // pages that came
+  std::atomic<std::int64_t> frames{0};            // sent
+  std::atomic<std::int64_t> foreign_requests{0};  // another Host or Origin
   std::atomic<std::int64_t> clients_too_many{0};
-  std::atomic<std::int64_t> bad_requests{0};       // each ended its connection
+  std::atomic<std::int64_t> bad_requests{0};  // each ended its connection
 };
 
 // Serves the page and sends it what it shows, by HTTP and WebSocket (subprotocol rimod-web), in a

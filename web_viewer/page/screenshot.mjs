@@ -1,0 +1,21 @@
+// Pictures of the page, dark and light.
+//   node screenshot.mjs LIBRARIES CHROMIUM URL OUTPUT_FOLDER NUM_OBJECTS
+import {launchBrowser, openPage, waitForObjects} from './browser.mjs';
+
+const [libraries, chromium, url, folder, count] = process.argv.slice(2);
+const browser = await launchBrowser(libraries, chromium);
+try {
+  for (const [colorScheme, name] of [['dark', 'web.png'], ['light', 'web_light.png']]) {
+    const context = await browser.newContext({colorScheme, viewport: {width: 1360, height: 800}});
+    const {page, errors} = await openPage(context, url);
+    await waitForObjects(page, Number(count));
+    await page.locator('#objects button').first().click();
+    if (colorScheme === 'light') await page.locator('#layer-ghosts').check();
+    await page.waitForTimeout(1500);  // the surfaces come one after the other
+    await page.screenshot({path: `${folder}/${name}`});
+    if (errors.length > 0) throw new Error(errors.join('\n'));
+    await context.close();
+  }
+} finally {
+  await browser.close();
+}
