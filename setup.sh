@@ -10,19 +10,24 @@ packages=(
   libeigen3-dev libnanoflann-dev libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev
   libopencv-highgui-dev
   libembree-dev libcli11-dev libspdlog-dev libyaml-cpp-dev nlohmann-json3-dev
-  zlib1g-dev liblzf-dev
+  zlib1g-dev liblzf-dev libwebsockets-dev
   # LCM and its viewers
   liblcm-dev libglib2.0-dev liblcm-bin liblcm-java libjchart2d-java openjdk-17-jdk-headless openjdk-17-jre
   # tests and demo
   libgtest-dev libbenchmark-dev iproute2 nftables libfaketime util-linux xvfb xdotool
 )
 checks=(clang clang-format clang-tidy libclang-rt-dev ccache valgrind)
+# For the page of rimod-web and its test. npm may be there from elsewhere: Debian's is 400 packages.
+web=(chromium)
+command -v npm >/dev/null || web+=(npm)
 
 usage() {
   cat <<'END'
-usage: ./setup.sh [--checks] [--print]
+usage: ./setup.sh [--checks] [--web] [--print]
   --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, clang
             with its fuzzer, ccache, valgrind
+  --web     also what the page of rimod-web is built and tested with: npm (where there is none yet)
+            and Chromium
   --print   print the packages, one a line, and install nothing
 END
 }
@@ -31,6 +36,7 @@ print=false
 for argument in "$@"; do
   case "$argument" in
     --checks) packages+=("${checks[@]}") ;;
+    --web) packages+=("${web[@]}") ;;
     --print) print=true ;;
     -h | --help) usage; exit 0 ;;
     *) echo "setup.sh: unknown option '$argument'" >&2; usage >&2; exit 2 ;;
