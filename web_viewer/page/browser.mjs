@@ -24,7 +24,7 @@ export async function openPage(context, url) {
 }
 
 /** Waits until as many objects are found for good, and drawn. */
-export async function waitForObjects(page, count, timeout = 60_000) {
+export async function waitForObjects(page, count, timeout = 150_000) {
   await page.waitForFunction((wanted) => {
     const list = document.getElementById('objects');
     return list.dataset.state === 'final' && list.children.length === wanted;

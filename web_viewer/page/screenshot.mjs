@@ -7,10 +7,11 @@ const browser = await launchBrowser(libraries, chromium);
 try {
   for (const [colorScheme, name] of [['dark', 'web.png'], ['light', 'web_light.png']]) {
     const context = await browser.newContext({colorScheme, viewport: {width: 1360, height: 800}});
+    context.setDefaultTimeout(150_000);
     const {page, errors} = await openPage(context, url);
     await waitForObjects(page, Number(count));
-    await page.locator('#objects button').first().click();
-    if (colorScheme === 'light') await page.locator('#layer-ghosts').check();
+    await page.locator('#objects button').first().dispatchEvent('click');
+    if (colorScheme === 'light') await page.locator('#layer-ghosts').dispatchEvent('click');
     await page.waitForTimeout(1500);  // the surfaces come one after the other
     await page.screenshot({path: `${folder}/${name}`});
     if (errors.length > 0) throw new Error(errors.join('\n'));
