@@ -266,6 +266,8 @@ TEST_F(RimodWebTest, ShowsWhatIsOnTheBusAndTellsItsStatus) {
                               std::chrono::seconds(10)));
   StampedScan scan;
   scan.utime = 42;
+  scan.utime_end = 43;
+  scan.num_lines = 1;
   scan.scan = ScanOfPoints(20'000);
   bus.PublishAll("RIMOD_SCAN", ToSections(scan));
   EXPECT_EQ(Await(client.get(), "scan")["num_points"], 20'000);
