@@ -23,10 +23,11 @@ export async function openPage(context, url) {
   return {page, errors};
 }
 
-/** Waits until as many objects are found for good, and drawn. */
+/** Waits until as many objects are found for good, and their models' surfaces have come. */
 export async function waitForObjects(page, count, timeout = 150_000) {
   await page.waitForFunction((wanted) => {
     const list = document.getElementById('objects');
-    return list.dataset.state === 'final' && list.children.length === wanted;
+    return list.dataset.state === 'final' && list.children.length === wanted &&
+        document.body.dataset.waiting === '0';
   }, count, {timeout});
 }

@@ -12,7 +12,7 @@ try {
     await waitForObjects(page, Number(count));
     await page.locator('#objects button').first().dispatchEvent('click');
     if (colorScheme === 'light') await page.locator('#layer-ghosts').dispatchEvent('click');
-    await page.waitForTimeout(1500);  // the surfaces come one after the other
+    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
     await page.screenshot({path: `${folder}/${name}`});
     if (errors.length > 0) throw new Error(errors.join('\n'));
     await context.close();

@@ -140,6 +140,7 @@ function showObjects() {
   const faded = Boolean(shown) && !ofThisScan && !provisional;
   objects.show(shown, view.origin, {faded, selected: state.selected});
   labels.show(objects.items, colours, faded);
+  document.body.dataset.waiting = [...state.asked].filter((name) => !objects.has(name)).length;  // for surfaces
   panel.showObjects(objects.items, colours, {
     objects: shown, faded, selected: state.selected, sensor: shown?.sensor ?? state.scan?.sensor ?? null});
   view.draw();
