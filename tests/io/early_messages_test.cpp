@@ -50,6 +50,31 @@ TEST(EarlyMessagesTest, TellsAllThatIsKnownOfEachObject) {
   }
 }
 
+TEST(EarlyMessagesTest, WhatIsToldComesBack) {
+  StampedEarlyObjects early;
+  early.utime = 5;
+  early.known_until = 99;
+  early.objects = {Object(1, EarlyStatus::kNew), Object(3, EarlyStatus::kUnseen)};
+  const EarlyObjectsFromMessage back = FromMessage(ToMessage(early));
+  ASSERT_TRUE(back.early) << back.error;
+  EXPECT_EQ(EncodeMessage(ToMessage(*back.early)), EncodeMessage(ToMessage(early)));
+}
+
+TEST(EarlyMessagesTest, UnusableMessagesAreErrors) {
+  StampedEarlyObjects early;
+  early.objects = {Object(1, EarlyStatus::kNew)};
+  const early_detections_t good = ToMessage(early);
+  const auto error_after = [&](void (*change)(early_detections_t*)) {
+    early_detections_t message = good;
+    change(&message);
+    return FromMessage(message).error;
+  };
+  EXPECT_NE(error_after([](early_detections_t* m) { m->num_detections = 2; }), "");
+  EXPECT_NE(error_after([](early_detections_t* m) { m->detections[0].status = 4; }), "");
+  EXPECT_NE(error_after([](early_detections_t* m) { m->detections[0].unseen_share = 1.5; }), "");
+  EXPECT_NE(error_after([](early_detections_t* m) { m->detections[0].detection.score = 2.0; }), "");
+}
+
 TEST(EarlyMessagesTest, NoMessageIsLargerThanMessagesMayBe) {
   StampedEarlyObjects early;
   for (std::int64_t id = 1; id <= 2000; ++id) {
