@@ -148,7 +148,9 @@ TEST(ConfigTest, EveryFieldOfTheParametersHasAKey) {
   EXPECT_EQ(num_keys["validation_scoring"], CountFields<ScoringParams>());
   EXPECT_EQ(num_keys["validation"], CountFields<ValidationParams>() - 1);  // scoring apart
   EXPECT_EQ(num_keys["pose_refinement"], CountFields<PoseRefinementParams>());
-  EXPECT_EQ(num_keys["ranking"], CountFields<RankingParams>());
+  // Two of its fields are quotas.
+  EXPECT_EQ(num_keys["ranking"],
+            CountFields<RankingParams>() + 2 * (CountFields<ModelQuota>() - 1));
   EXPECT_EQ(num_keys["refinement"], CountFields<RefinementParams>());
   EXPECT_EQ(num_keys["evidence"], CountFields<EvidenceParams>());
   EXPECT_EQ(num_keys["choice"], CountFields<ChoiceParams>());
