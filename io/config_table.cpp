@@ -175,7 +175,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"ranking", "second_min_share", &r.second_min_share, ".. 0 .. 1"},
       {"ranking", "min_known", &r.min_known, "of the points that must have nothing in front; 0 .. 1"},
       {"ranking", "num_models", &r.num_models, "that share the work, for matchers that have a part of them; 0 = those loaded"},
-      {"ranking", "full_models", &r.full_models, "with more models each gets less work: the root of this over their number; >= 1"},
+      {"ranking", "full_models", &r.full_models, "with more models each gets less work, by this over their number to the power of 0.6; >= 1"},
       {"ranking", "max_scanned", &r.max_scanned, "best of each model: among these different poses are looked for; >= 1"},
       {"ranking", "refined_always", &r.refined.always, "of each model: so many of the best different poses are refined ..; >= 0"},
       {"ranking", "refined_most", &r.refined.most, ".. and up to this; >= refined_always"},

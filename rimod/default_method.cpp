@@ -17,6 +17,10 @@ namespace {
 // Rounds that parallel loops over very many small pieces are cut into.
 constexpr std::size_t kBatches = 64;
 
+// With more models than full_models each gets this power of full_models over their number: a hundred
+// cost about four times what seven do, and lose least that way (docs/benchmarks.md).
+constexpr double kShareExponent = 0.6;
+
 // Times the matches and checks of a feature where a scene has few.
 constexpr double kMostMatches = 5.0;
 
@@ -181,7 +185,8 @@ PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDataba
   const int num_models =
       ranking.num_models > 0 ? ranking.num_models : static_cast<int>(database.models().size());
   if (num_models <= ranking.full_models) return shared;
-  const double share = std::sqrt(static_cast<double>(ranking.full_models) / num_models);
+  const double share =
+      std::pow(static_cast<double>(ranking.full_models) / num_models, kShareExponent);
   for (int* const count :
        {&shared.matching.max_matches, &shared.matching.max_checks,
         &shared.matching.min_correspondences, &ranking.max_scanned, &ranking.refined.always,

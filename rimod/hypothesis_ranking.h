@@ -34,8 +34,8 @@ struct RankingParams {
   int second_points = 48;          // >= 1
   double second_min_share = 0.58;  // 0 .. 1
   double min_known = 0.15;         // of them with nothing in front; 0 .. 1
-  // How much work goes into a model: with more than full_models of them the work grows with the
-  // root of their number, so that each gets less. Of the matches of a feature and the quotas.
+  // How much work goes into a model: with more than full_models of them it grows slower than their
+  // number, so that each gets less of the matches of a feature and of the quotas.
   int num_models = 0;     // models that share it; 0 = those of the database
   int full_models = 8;    // >= 1
   int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1

@@ -87,7 +87,7 @@ PipelineParams OwnParams() {
   params.range_patch.normal_pixels = 2.0;
   params.range_patch.mask_empty_cells = false;
   params.model_views.ground_margin = 0.5;
-  params.matching.max_descriptor_distance = 0.16;
+  params.matching.max_descriptor_distance = 0.07;
   params.matching.max_matches = 5;
   params.matching.max_checks = 60;
   params.matching.min_correspondences = 2500;

@@ -266,10 +266,10 @@ TEST(DefaultMethodTest, ManyModelsShareTheWork) {
   EXPECT_EQ(SharedAmongModels(params, ArmchairDatabase()).ranking.refined.most, 120);
   params.ranking.num_models = 32;
   const PipelineParams shared = SharedAmongModels(params, ArmchairDatabase());
-  EXPECT_EQ(shared.ranking.refined.always, 20);
-  EXPECT_EQ(shared.ranking.refined.most, 60);
+  EXPECT_EQ(shared.ranking.refined.always, 18);  // 40 / 4^0.6, no fractions lost
+  EXPECT_EQ(shared.ranking.refined.most, 53);
   EXPECT_EQ(shared.ranking.refined.min_score, 0.005);
-  EXPECT_EQ(shared.matching.max_matches, (params.matching.max_matches + 1) / 2);
+  EXPECT_EQ(shared.matching.max_matches, 9);  // of 20
   params.ranking.num_models = 1'000'000;
   EXPECT_EQ(SharedAmongModels(params, ArmchairDatabase()).ranking.judged.always, 1);
   params.ranking.num_models = 0;  // as many as the database has: one
