@@ -17,8 +17,8 @@ namespace {
 // Rounds that parallel loops over very many small pieces are cut into.
 constexpr std::size_t kBatches = 64;
 
-// With more models than full_models each gets this power of full_models over their number: a hundred
-// cost about four times what seven do, and lose least that way (docs/benchmarks.md).
+// With more models than full_models each gets this power of full_models over their number: a
+// hundred cost about four times what seven do, and lose least that way (docs/benchmarks.md).
 constexpr double kShareExponent = 0.6;
 
 // Times the matches and checks of a feature where a scene has few.
