@@ -22,7 +22,7 @@ struct TracedStage {
 
 struct DetectorTrace {
   FeatureSet features;
-  ModelMatches matches;  // default method only
+  ModelMatches matches;                 // default method only
   std::vector<TracedStage> stages;      // in the order of work
   std::vector<JudgedCandidate> judged;  // default method only, best first
   CandidateList chosen;                 // the detections, best first
