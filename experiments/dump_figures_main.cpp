@@ -16,6 +16,7 @@
 #include "rimod/default_method.h"
 #include "rimod/detector.h"
 #include "rimod/judgement.h"
+#include "rimod/model_work.h"
 
 namespace rimod {
 namespace {

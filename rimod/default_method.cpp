@@ -8,6 +8,7 @@
 #include "rimod/feature_support.h"
 #include "rimod/judgement.h"
 #include "rimod/matching.h"
+#include "rimod/model_work.h"
 #include "rimod/refinement.h"
 #include "rimod/single_correspondence.h"
 
@@ -16,13 +17,6 @@ namespace {
 
 // Rounds that parallel loops over very many small pieces are cut into.
 constexpr std::size_t kBatches = 64;
-
-// With more models than full_models each gets this power of full_models over their number: a
-// hundred cost about four times what seven do, and lose least that way (docs/benchmarks.md).
-constexpr double kShareExponent = 0.6;
-
-// Times the matches and checks of a feature where a scene has few.
-constexpr double kMostMatches = 5.0;
 
 // Indices by falling score, ties by index.
 template <typename List>
@@ -168,32 +162,7 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
   });
 }
 
-// More matches for each of few features.
-MatchingParams ForFeatures(MatchingParams params, int num_features) {
-  const double wanted = static_cast<double>(params.min_correspondences) / std::max(num_features, 1);
-  const double factor = std::clamp(wanted / params.max_matches, 1.0, kMostMatches);
-  params.max_matches = static_cast<int>(std::lround(factor * params.max_matches));
-  params.max_checks = static_cast<int>(std::lround(factor * params.max_checks));
-  return params;
-}
-
 }  // namespace
-
-PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDatabase& database) {
-  PipelineParams shared = params;
-  RankingParams& ranking = shared.ranking;
-  const int num_models =
-      ranking.num_models > 0 ? ranking.num_models : static_cast<int>(database.models().size());
-  if (num_models <= ranking.full_models) return shared;
-  const double share =
-      std::pow(static_cast<double>(ranking.full_models) / num_models, kShareExponent);
-  for (int* const count :
-       {&shared.matching.max_matches, &shared.matching.max_checks,
-        &shared.matching.min_correspondences, &ranking.max_scanned, &ranking.refined.always,
-        &ranking.refined.most, &ranking.judged.always, &ranking.judged.most})
-    *count = static_cast<int>(std::ceil(share * *count));
-  return shared;
-}
 
 ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& database,
                            const PipelineParams& params, const Execution& execution) {
@@ -245,20 +214,6 @@ std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesi
   return BestOfEachModel(RankEachModel(OfEachModel(hypotheses, database), database,
                                        ranking.refined.most, kRankWeights, ranking, execution),
                          ranking.judged);
-}
-
-std::vector<Hypothesis> BestOfEachModel(const std::vector<Hypothesis>& hypotheses,
-                                        const ModelQuota& quota) {
-  std::vector<Hypothesis> best;
-  int model = -1, kept = 0;
-  for (const Hypothesis& hypothesis : hypotheses) {
-    if (hypothesis.model != model) kept = 0;
-    model = hypothesis.model;
-    if (kept >= (hypothesis.score < quota.min_score ? quota.always : quota.most)) continue;
-    best.push_back(hypothesis);
-    ++kept;
-  }
-  return best;
 }
 
 std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
@@ -323,7 +278,8 @@ std::vector<Candidate> ChooseCandidates(const Scene& scene,
 JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
                           const ModelDatabase& database, const PipelineParams& all_params,
                           const Execution& execution) {
-  const PipelineParams params = SharedAmongModels(all_params, database);
+  const PipelineParams params =
+      SharedAmongModels(all_params, static_cast<int>(database.models().size()));
   const Scene scene = [&] {
     const StageScope stage(execution, "scene_normals");
     return Scene(image, params.evidence.normal_radius, execution);

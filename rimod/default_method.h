@@ -24,9 +24,6 @@ JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
                           const ModelDatabase& database, const PipelineParams& params,
                           const Execution& execution);
 
-// The parameters for so many models: with more of them each gets less work (RankingParams).
-PipelineParams SharedAmongModels(const PipelineParams& params, const ModelDatabase& database);
-
 // Its steps, also for training the judgement.
 
 // Each model's correspondences, the scene's features in order. Stage matching.
@@ -55,10 +52,6 @@ std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& 
 std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
                                        const ModelDatabase& database, const PipelineParams& params,
                                        const Execution& execution);
-
-// Of hypotheses in such an order, of each model the first as the quota says.
-std::vector<Hypothesis> BestOfEachModel(const std::vector<Hypothesis>& hypotheses,
-                                        const ModelQuota& quota);
 
 // Everything that judging a candidate found.
 struct JudgedCandidate {

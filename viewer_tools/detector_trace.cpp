@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "rimod/feature_extraction.h"
+#include "rimod/model_work.h"
 #include "rimod/paper_method.h"
 
 namespace rimod {
@@ -21,8 +22,10 @@ CandidateList ToCandidates(const std::vector<Hypothesis>& hypotheses) {
 }
 
 void TraceDefaultMethod(const Scene& scene, const ModelDatabase& database,
-                        const PipelineParams& params, const Execution& execution,
+                        const PipelineParams& all_params, const Execution& execution,
                         DetectorTrace* trace) {
+  const PipelineParams params =
+      SharedAmongModels(all_params, static_cast<int>(database.models().size()));
   const RankingParams& ranking = params.ranking;
   trace->matches = MatchToModels(trace->features, database, params, execution);
   // More than the method itself keeps, so that what it drops can be seen.

@@ -6,6 +6,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -48,6 +49,7 @@ class RawClient {
     std::size_t received = 0;
     while (received < size) {
       const ssize_t part = recv(socket_, bytes.data() + received, size - received, 0);
+      if (part < 0 && errno == ECONNRESET) was_reset_ = true;
       if (part <= 0) break;
       received += static_cast<std::size_t>(part);
     }
@@ -119,10 +121,13 @@ class RawClient {
   }
   // Of the close frame that ended the messages; 0: there was none.
   int close_status() const { return close_status_; }
+  // The other end closed while bytes of ours were unread: its close frame may be lost.
+  bool was_reset() const { return was_reset_; }
 
  private:
   int socket_;
   bool connected_ = false;
+  bool was_reset_ = false;
   int close_status_ = 0;
 };
 
