@@ -36,6 +36,9 @@ class DisorderTest : public FaultsTest {
 TEST_F(DisorderTest, AWallClockThatStepsBackAndForthDisturbsNobody) {
   const std::string library = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
   if (!std::filesystem::exists(library)) GTEST_SKIP() << "no libfaketime";
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer's library must be the first that is loaded, libfaketime too";
+#endif
   setenv("FAKETIME_TIMESTAMP_FILE", folder_.Write("step", "+0").c_str(), 1);
   setenv("FAKETIME_NO_CACHE", "1", 1);
   setenv("FAKETIME_DONT_FAKE_MONOTONIC", "1", 1);
@@ -191,6 +194,9 @@ TEST_F(DisorderTest, AMatcherWithoutModelsTellsOfEveryScanThatItFoundNothing) {
 
 // Under a bound that a queue without end would break soon.
 TEST_F(DisorderTest, UnderOverloadMemoryIsFlatAndTheNewestScansAreDone) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer reserves more memory than ulimit -v leaves";
+#endif
   const auto start = [&](const std::string& executable) {
     std::string command =
         "ulimit -v 1500000; exec " + std::string(RIMOD_BIN_DIR) + "/" + executable + " --threads 1";

@@ -57,8 +57,11 @@ chain "$work/long" "$work/long_out"
   >"$work/expected"
 same "detections of a log of 6 scans" "$work/replayed" "$work/expected"
 [ "$(grep -c '"scan":' "$work/long_out.json")" = 6 ] || fail "not the times of 6 scans"
+# A sanitizer keeps freed memory for a while: its builds say nothing about memory.
+stages="assembler extractor matcher"
+if grep -q __asan_init "$bin/rimod-assembler"; then echo "not compared: peak memory, with a sanitizer"; stages=; fi
 kilobytes() { sed -n 's/.*peak memory \([0-9]*\) kB/\1/p' "$1"; }
-for stage in assembler extractor matcher; do
+for stage in $stages; do
   once=$(kilobytes "$work/once.$stage.err") many=$(kilobytes "$work/long_out.$stage.err")
   echo "rimod-$stage: peak memory $once kB for one scan, $many kB for 6"
   [ "$many" -le $((once + once / 4 + 10000)) ] || fail "rimod-$stage keeps what it has done"
