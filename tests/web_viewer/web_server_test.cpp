@@ -1,6 +1,9 @@
 #include "web_viewer/web_server.h"
 
 #include <gtest/gtest.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 #include <chrono>
 #include <memory>
@@ -223,6 +226,9 @@ TEST_F(WebServerTest, APortInUseIsToldAtOnce) {
   WebServerOptions options = AnyPort();
   options.port = server_.port();
   WebContent content(R"({"type":"hello"})", {});
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler leaks_of_libwebsockets;  // of the listener that it could not make
+#endif
   EXPECT_THROW(WebServer(options, Page(), &content, {}), std::runtime_error);
 }
 
