@@ -37,6 +37,7 @@ class RawClient {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
       const ssize_t size = send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (size < 0 && (errno == ECONNRESET || errno == EPIPE)) was_reset_ = true;
       if (size <= 0) return false;
       sent += static_cast<std::size_t>(size);
     }
