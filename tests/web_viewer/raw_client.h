@@ -6,7 +6,6 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,7 +36,6 @@ class RawClient {
     std::size_t sent = 0;
     while (sent < bytes.size()) {
       const ssize_t size = send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-      if (size < 0 && (errno == ECONNRESET || errno == EPIPE)) was_reset_ = true;
       if (size <= 0) return false;
       sent += static_cast<std::size_t>(size);
     }
@@ -50,7 +48,6 @@ class RawClient {
     std::size_t received = 0;
     while (received < size) {
       const ssize_t part = recv(socket_, bytes.data() + received, size - received, 0);
-      if (part < 0 && errno == ECONNRESET) was_reset_ = true;
       if (part <= 0) break;
       received += static_cast<std::size_t>(part);
     }
@@ -122,13 +119,10 @@ class RawClient {
   }
   // Of the close frame that ended the messages; 0: there was none.
   int close_status() const { return close_status_; }
-  // The other end closed while bytes of ours were unread: its close frame may be lost.
-  bool was_reset() const { return was_reset_; }
 
  private:
   int socket_;
   bool connected_ = false;
-  bool was_reset_ = false;
   int close_status_ = 0;
 };
 

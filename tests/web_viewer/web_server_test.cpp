@@ -71,10 +71,14 @@ class WebServerTest : public testing::Test {
     return message ? DecodeFrame(*message).header : nlohmann::json{{"type", "none"}};
   }
   // A page that does this is closed with the status, and everybody else served as before.
-  void ExpectClosed(RawClient* client, int status) {
+  // may_be_lost: the server closes while bytes of ours are unread, which may take the close frame
+  // with it.
+  void ExpectClosed(RawClient* client, int status, bool may_be_lost = false) {
     while (client->ReceiveMessage()) {
     }
-    EXPECT_TRUE(client->close_status() == status || client->was_reset()) << client->close_status();
+    if (!may_be_lost || client->close_status() != 0) {
+      EXPECT_EQ(client->close_status(), status);
+    }
     EXPECT_EQ(Header(Connect().get())["type"], "hello");
   }
 
@@ -192,7 +196,7 @@ TEST_F(WebServerTest, AMessageThatIsTooLongEndsItsConnection) {
   const auto parts = Connect();
   parts->SendFrame(std::string(100, 'x'), 0x01);
   for (int i = 0; i < 100; ++i) parts->SendFrame(std::string(100, 'x'), 0x00);
-  ExpectClosed(parts.get(), kTooLarge);
+  ExpectClosed(parts.get(), kTooLarge, /*may_be_lost=*/true);
   EXPECT_TRUE(Eventually([&] { return server_.counters().bad_requests >= 2; }));
 }
 
