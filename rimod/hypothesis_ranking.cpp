@@ -49,9 +49,9 @@ void Normalise(float count, float outside_count, RankingFigures* figures) {
 }
 
 void CheckQuota(const std::string& name, const ModelQuota& quota, int largest) {
-  CheckWithin(("ranking " + name + "_most").c_str(), quota.most, 1, largest);
-  CheckWithin(("ranking " + name + "_always").c_str(), quota.always, 0, quota.most);
-  CheckWithin(("ranking " + name + "_min_score").c_str(), quota.min_score, 0.0, 1.0);
+  CheckWithin("ranking " + name + "_most", quota.most, 1, largest);
+  CheckWithin("ranking " + name + "_always", quota.always, 0, quota.most);
+  CheckWithin("ranking " + name + "_min_score", quota.min_score, 0.0, 1.0);
 }
 
 }  // namespace
