@@ -2,7 +2,7 @@
 """Make labelled scans of random offices with rimod-simulator, as training data for the judgement.
 
 usage: make_scenes.py --furniture FOLDER --simulator rimod-simulator --out OUT [--scenes 150] [--seed 1] [--jobs 2]
-                      [--mean-visible 1.0] [--set offices|alone|tilted]
+                      [--mean-visible 1.0] [--set offices|alone|tilted] [--draw-objects N]
 
 FOLDER holds the .sh3f files of Debian's package sweethome3d-furniture (/usr/share/sweethome3d/furniture); the
 meshes used are cut out of them, scaled to their catalogue sizes and written to OUT/meshes. Writes
@@ -15,6 +15,9 @@ Scene NNN depends on the seed and its number only: more scenes leave the first o
 one of the objects can hardly be seen, or of whose objects more is in view than --mean-visible, is thrown away and
 drawn again, up to ATTEMPTS times. The set "alone" has one object a scan, 1.5 to 13 m away in a hall with other things
 along its walls and far away; in the set "tilted" it hangs 2 to 4 m away, rolled and pitched by up to 25 degrees.
+
+The objects are sixteen of ours, or with --draw-objects N others that the seed draws: primitives of all sizes and meshes.
+Then every second look-alike is one of the objects in another size.
 """
 import argparse
 import concurrent.futures
@@ -99,6 +102,7 @@ class Furniture:
 
     def __init__(self, folder, meshes):
         self.meshes, self.models = meshes, {}
+        self.drawn, self.taken = [], set()  # objects that the seed drew, and their meshes
         meshes.mkdir(parents=True, exist_ok=True)
         for archive in sorted(pathlib.Path(folder).glob('*.sh3f')):
             pieces = {}
@@ -118,6 +122,48 @@ class Furniture:
             write_mesh(zipfile.ZipFile(archive).read(piece['model'].lstrip('/')).decode('latin1'), size, path)
         spec = {'mesh': {'file': f'../meshes/{path.name}'}}
         return Shape(name, spec, [-size[0] / 2, -size[1] / 2, 0], [size[0] / 2, size[1] / 2, size[2]])
+
+    def any_of(self, rng, pieces):
+        """The shape of one of these that is not an object."""
+        return self.shape(*rng.choice([p for p in pieces if p not in self.taken]))
+
+    def points(self, shape, rng, count=4000):
+        """On the surface of a mesh's shape, evenly, in its own frame."""
+        vertices, triangles = [], []
+        for line in (self.meshes / pathlib.Path(shape.spec['mesh']['file']).name).read_text().splitlines():
+            kind, *words = line.split()
+            if kind == 'v':
+                vertices.append([float(w) + low for w, low in zip(words, shape.low)])
+            else:
+                index = [int(w) - 1 for w in words]
+                triangles += [(index[0], a, b) for a, b in zip(index[1:], index[2:])]
+        areas = [area(*(vertices[i] for i in t)) for t in triangles]
+        result = []
+        for a, b, c in rng.choices(triangles, areas, k=count):
+            u, v = sorted((rng.random(), rng.random()))
+            result.append([u * p + (v - u) * q + (1 - v) * r for p, q, r in zip(vertices[a], vertices[b], vertices[c])])
+        return result
+
+
+def area(a, b, c):
+    u, v = ([y - x for x, y in zip(a, p)] for p in (b, c))
+    return 0.5 * math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+
+
+def symmetry_of(points, cell=0.025):
+    """About z: the turns after which 98 % of the points are within a cell or two of others."""
+    def cell_of(p):
+        return tuple(math.floor(x / cell) for x in p)
+
+    near = {(i + a, j + b, k + c) for i, j, k in map(cell_of, points) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1)}
+
+    def same(angle):
+        c, s = math.cos(angle), math.sin(angle)
+        return sum(cell_of((c * x - s * y, s * x + c * y, z)) in near for x, y, z in points) > 0.98 * len(points)
+
+    if all(same(math.radians(a)) for a in range(30, 180, 30)):
+        return 'yaw_continuous'
+    return 'yaw4' if same(math.pi / 2) else 'yaw2' if same(math.pi) else 'none'
 
 
 def write_mesh(obj, size, path):
@@ -286,14 +332,16 @@ def other_size(rng, size):
 
 def lookalike(rng, furniture):
     """Something a little like one of the objects."""
+    if furniture.drawn and rng.random() < 0.5:
+        return rng.choice(furniture.drawn).lookalike(rng)
     kind = rng.choice(['carton', 'carton', 'carton', 'chair', 'chair', 'chair', 'screen', 'panel', 'robot', 'bin', 'stool', 'round', 'shelf', 'stack', 'seat'])
     if kind == 'carton':
         return carton(*other_size(rng, rng.choice([(0.38, 0.60, 0.42), (0.33, 0.33, 0.36), (0.35, 0.55, 0.30)])))
     if kind == 'chair':
-        return furniture.shape(*rng.choice(CHAIRS)) if rng.random() < 0.75 else \
+        return furniture.any_of(rng, CHAIRS) if rng.random() < 0.75 else \
             chair(rng.uniform(0.4, 0.5), rng.uniform(0.38, 0.5), rng.uniform(0.75, 1.05), lean=rng.uniform(0, 14))
     if kind == 'seat':
-        return furniture.shape(*rng.choice(SEATS))
+        return furniture.any_of(rng, SEATS)
     if kind == 'screen':
         return lookalike_screen(rng)
     if kind == 'panel':
@@ -313,6 +361,65 @@ def lookalike(rng, furniture):
     return of_parts('stack', [box(*low), box(*high, (0, 0.1 * low[1], low[2]), yaw_deg=rng.uniform(-20, 20))])
 
 
+PRIMITIVES = {  # what draws one: the shape, ranges of its sizes (m), symmetry, small
+    'carton': (carton, [(0.25, 0.55), (0.25, 0.7), (0.2, 0.6)], 'yaw2', True),
+    'cube': (lambda x, z: carton(x, x, z), [(0.25, 0.45), (0.2, 0.6)], 'yaw4', True),
+    'screen': (lambda w, h, lift: screen(w, h, 0.05, lift), [(0.4, 0.8), (0.25, 0.5), (0.08, 0.2)], 'none', True),
+    'robot': (robot, [(0.35, 0.7), (0.3, 0.5), (0.12, 0.35), (0.1, 0.3)], 'none', False),
+    'bin': (bin_shape, [(0.1, 0.18), (0.19, 0.25), (0.35, 0.7)], 'yaw_continuous', False),
+    'stool': (stool, [(0.3, 0.5), (0.35, 0.7)], 'yaw4', False),
+    'table': (lambda x, y, z: table(x, y, z, 0.04, 'table'), [(0.4, 0.7), (0.75, 1.3), (0.4, 0.8)], 'yaw2', False),
+    'round_table': (round_table, [(0.28, 0.5), (0.45, 0.8)], 'yaw_continuous', False),
+    'corner_shelf': (corner_shelf, [(0.5, 0.9), (0.4, 0.9)], 'none', False),
+    'chair': (lambda seat, depth, back: chair(seat, depth, seat + back), [(0.38, 0.5), (0.36, 0.5), (0.3, 0.6)], 'none', False),
+    'shelf': (lambda d, w, h: shelf(d, w, h, 3), [(0.28, 0.42), (0.45, 0.8), (0.6, 1.1)], 'none', False),
+    'drum': (lambda r, z: of_parts('drum', [cylinder(r, z)]), [(0.12, 0.25), (0.3, 0.8)], 'yaw_continuous', False),
+    'post': (lambda r, z: of_parts('post', [cylinder(2.2 * r, 0.04), cone(r, 0.5 * r, z, (0, 0, 0.04))]), [(0.06, 0.12), (0.5, 1.0)],
+             'yaw_continuous', False),
+}
+
+
+class DrawnPrimitive(ObjectClass):
+    """An object whose look-alikes are the same primitive in other sizes."""
+
+    def __init__(self, rng, kind):
+        self.draw, ranges, symmetry, small = PRIMITIVES[kind]
+        self.size = [round(rng.uniform(*r), 3) for r in ranges]
+        super().__init__(kind, self.draw(*self.size), symmetry, small, rng.random() < 0.3, round(rng.uniform(0.3, 0.7), 2))
+
+    def lookalike(self, rng):
+        return self.draw(*other_size(rng, self.size))
+
+
+class DrawnMesh(ObjectClass):
+    """An object whose look-alikes are the same mesh, larger or smaller."""
+
+    def __init__(self, rng, furniture, piece):
+        self.furniture, self.piece, self.scale = furniture, piece, rng.choice([0.9, 1.0, 1.1])
+        shape = furniture.shape(*piece, self.scale)
+        super().__init__(piece[1], shape, symmetry_of(furniture.points(shape, rng)), shape.radius < 0.3, reflectivity=round(rng.uniform(0.3, 0.7), 2))
+
+    def lookalike(self, rng):
+        return self.furniture.shape(*self.piece, round(self.scale * rng.choice([0.75, 0.82, 1.2, 1.3]), 3))
+
+
+def drawn_classes(seed, furniture, count):
+    """Half primitives, half meshes, none twice."""
+    rng = random.Random(f'{seed}/drawn')
+    primitives = [DrawnPrimitive(rng, kind) for kind in rng.sample(sorted(PRIMITIVES), min(count // 2, len(PRIMITIVES)))]
+    pieces, meshes = CHAIRS + SEATS + FLOOR_THINGS + TOP_THINGS, []
+    rng.shuffle(pieces)
+    for piece in pieces:
+        low, high = furniture.shape(*piece).low, furniture.shape(*piece).high
+        if len(meshes) < count - len(primitives) and 0.4 < math.dist(low, high) < 1.9:
+            meshes.append(DrawnMesh(rng, furniture, piece))
+            furniture.taken.add(piece)
+    furniture.drawn = primitives + meshes
+    for number, drawn in enumerate(furniture.drawn):
+        drawn.name = f'{drawn.name}_{seed}_{number}'.replace('-', '_')
+    return furniture.drawn
+
+
 def lookalike_screen(rng):
     width, height, lift = other_size(rng, (0.54, 0.35, 0.14))
     return screen(width, height, rng.uniform(0.03, 0.08), lift)
@@ -326,7 +433,7 @@ def top_thing(rng, furniture):
         return carton(*other_size(rng, rng.choice([(0.33, 0.33, 0.36), (0.25, 0.33, 0.12), (0.2, 0.3, 0.2)])))
     if kind < 0.5:
         return of_parts('can', [cylinder(rng.uniform(0.04, 0.12), rng.uniform(0.1, 0.35))])
-    return furniture.shape(*rng.choice(TOP_THINGS))
+    return furniture.any_of(rng, TOP_THINGS)
 
 
 def wall_thing(rng, furniture):
@@ -336,7 +443,7 @@ def wall_thing(rng, furniture):
     if kind < 0.5:
         size = rng.uniform(0.4, 0.6), rng.uniform(0.4, 1.2), rng.uniform(0.5, 0.9) if rng.random() < 0.6 else rng.uniform(1.2, 2.0)
         return of_parts('cabinet', [box(*size)], top=size[:2])
-    return furniture.shape(*rng.choice(WALL_THINGS))
+    return furniture.any_of(rng, WALL_THINGS)
 
 
 def desk(rng):
@@ -483,7 +590,7 @@ class Office:
         return self.try_floor(Placed(shape, x, y, 0, self.rng.uniform(-math.pi, math.pi), reflectivity=self.reflectivity()))
 
     def any_thing(self):
-        return lookalike(self.rng, self.furniture) if self.rng.random() < 0.6 else self.furniture.shape(*self.rng.choice(FLOOR_THINGS))
+        return lookalike(self.rng, self.furniture) if self.rng.random() < 0.6 else self.furniture.any_of(self.rng, FLOOR_THINGS)
 
     def fill(self):
         rng = self.rng
@@ -663,6 +770,7 @@ def main():
     parser.add_argument('--jobs', type=int, default=2)
     parser.add_argument('--mean-visible', type=float, default=1.0, help='smaller: more of the objects is hidden')
     parser.add_argument('--set', default='offices', choices=('offices', 'alone', 'tilted'))
+    parser.add_argument('--draw-objects', type=int, metavar='N', help='N other objects, drawn by the seed')
     parser.add_argument('--no-recordings', action='store_true', help='OUT has the models already')
     a = parser.parse_args()
     furniture = Furniture(a.furniture, a.out / 'meshes')
@@ -670,9 +778,12 @@ def main():
         sys.exit(f'{a.furniture}: no .sh3f files')
     for folder in ('scenes', f'{a.set}/logs'):
         (a.out / folder).mkdir(parents=True, exist_ok=True)
-    classes = object_classes(furniture)
+    classes = drawn_classes(a.seed, furniture, a.draw_objects) if a.draw_objects else object_classes(furniture)
     for piece in CHAIRS + SEATS + FLOOR_THINGS + WALL_THINGS + TOP_THINGS:
         furniture.shape(*piece)
+    for drawn in furniture.drawn:  # written before the threads read them
+        for scale in range(40):
+            drawn.lookalike(random.Random(scale))
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         if not a.no_recordings:
             list(pool.map(lambda p: record(p[1], a.out, a.simulator, a.seed * 1000 + p[0]), enumerate(classes)))
