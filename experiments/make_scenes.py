@@ -2,7 +2,8 @@
 """Make labelled scans of random offices with rimod-simulator, as training data for the judgement.
 
 usage: make_scenes.py --furniture FOLDER --simulator rimod-simulator --out OUT [--scenes 150] [--seed 1] [--jobs 2]
-                      [--mean-visible 1.0] [--set offices|alone|tilted] [--draw-objects N]
+                      [--mean-visible 1.0] [--set offices|alone|tilted]
+                      [--draw-objects N] [--own-lookalikes 0.5]
 
 FOLDER holds the .sh3f files of Debian's package sweethome3d-furniture (/usr/share/sweethome3d/furniture); the
 meshes used are cut out of them, scaled to their catalogue sizes and written to OUT/meshes. Writes
@@ -17,7 +18,7 @@ drawn again, up to ATTEMPTS times. The set "alone" has one object a scan, 1.5 to
 along its walls and far away; in the set "tilted" it hangs 2 to 4 m away, rolled and pitched by up to 25 degrees.
 
 The objects are sixteen of ours, or with --draw-objects N others that the seed draws: primitives of all sizes and meshes.
-Then every second look-alike is one of the objects in another size.
+Then a share of the look-alikes are the objects themselves in another size.
 """
 import argparse
 import concurrent.futures
@@ -103,6 +104,7 @@ class Furniture:
     def __init__(self, folder, meshes):
         self.meshes, self.models = meshes, {}
         self.drawn, self.taken = [], set()  # objects that the seed drew, and their meshes
+        self.own_lookalikes = 0.5  # share of the look-alikes that are drawn objects in other sizes
         meshes.mkdir(parents=True, exist_ok=True)
         for archive in sorted(pathlib.Path(folder).glob('*.sh3f')):
             pieces = {}
@@ -332,7 +334,7 @@ def other_size(rng, size):
 
 def lookalike(rng, furniture):
     """Something a little like one of the objects."""
-    if furniture.drawn and rng.random() < 0.5:
+    if furniture.drawn and rng.random() < furniture.own_lookalikes:
         return rng.choice(furniture.drawn).lookalike(rng)
     kind = rng.choice(['carton', 'carton', 'carton', 'chair', 'chair', 'chair', 'screen', 'panel', 'robot', 'bin', 'stool', 'round', 'shelf', 'stack', 'seat'])
     if kind == 'carton':
@@ -676,15 +678,15 @@ def record(item, out, simulator, seed):
 
 
 def items_of(number, seed, classes):
-    """The objects of a scan: every class once in a run of four scans, some left out, some twice."""
-    order = list(classes)
-    random.Random(f'{seed}/classes/{number // 4}').shuffle(order)
-    items = order[number % 4::4]
+    """The objects of a scan: every class once in a run of four scans (two, of few classes), some left out, some twice."""
+    order, run = list(classes), 4 if len(classes) > 8 else 2
+    random.Random(f'{seed}/classes/{number // run}').shuffle(order)
+    items = order[number % run::run]
     rng = random.Random(f'{seed}/items/{number}')
     if rng.random() < 0.25:
         items.pop(rng.randrange(len(items)))
     if rng.random() < 0.2:
-        items.append(rng.choice(items))
+        items.append(rng.choice(items or order))
     return items
 
 
@@ -771,9 +773,11 @@ def main():
     parser.add_argument('--mean-visible', type=float, default=1.0, help='smaller: more of the objects is hidden')
     parser.add_argument('--set', default='offices', choices=('offices', 'alone', 'tilted'))
     parser.add_argument('--draw-objects', type=int, metavar='N', help='N other objects, drawn by the seed')
+    parser.add_argument('--own-lookalikes', type=float, default=0.5, help='share of the look-alikes that are drawn objects in other sizes')
     parser.add_argument('--no-recordings', action='store_true', help='OUT has the models already')
     a = parser.parse_args()
     furniture = Furniture(a.furniture, a.out / 'meshes')
+    furniture.own_lookalikes = a.own_lookalikes
     if not furniture.models:
         sys.exit(f'{a.furniture}: no .sh3f files')
     for folder in ('scenes', f'{a.set}/logs'):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Learn the default method's weights from figures of labelled scans.
 
-usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv[@WEIGHT] [--data ..] [--out FILE.cpp]
+usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv[@WEIGHT] [--data ..] [--judgement-only] [--out FILE.cpp]
        train_judgement.py --models MODELS_DIR --data .. --folds 5
 
 MODELS_DIR has <class>/model.json with box and symmetry, LABELS.json and model.json are in the format of
@@ -11,7 +11,7 @@ which each object counts the same, and boosted trees for judging candidates (lin
 Debian's python3-sklearn). A candidate
 is right within 10 cm and 15 degrees of an object of its class (modulo its symmetry), a proposal within 20 cm and
 25 degrees; it is wrong when its centre is farther than max(0.15 m, 0.25 diameters) from all of them; those in
-between are left out. The trees' probability is calibrated on what held-out scans of the sets without @WEIGHT would
+between are left out. With --judgement-only the two regressions stay as OUT has them. The trees' probability is calibrated on what held-out scans of the sets without @WEIGHT would
 have as detections. With
 --folds the scans are split and the log loss and the average precision over the held-out candidates are printed,
 nothing is written.
@@ -56,10 +56,12 @@ class Model:
         self.symmetry = SYMMETRY[m.get('symmetry', 'none')]
 
 
-def read_figures(path):
+def read_figures(path, kinds=tuple(RIGHT)):
     """{kind: (scans, classes, poses N x 7, figures N x F)}"""
     rows = {}
     for line in open(path):
+        if line[0] not in kinds:
+            continue
         kind, scan, name, *numbers = line.rstrip('\n').split(',')
         rows.setdefault(kind, []).append((scan, name, [float(x) for x in numbers]))
     result = {}
@@ -124,8 +126,8 @@ class Trees:
     def __init__(self, X, y, weight):
         from sklearn.ensemble import HistGradientBoostingClassifier
         self.fitted = HistGradientBoostingClassifier(
-            max_iter=200, learning_rate=0.05, max_leaf_nodes=16, l2_regularization=3.0,
-            min_samples_leaf=40, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
+            max_iter=400, learning_rate=0.04, max_leaf_nodes=16, l2_regularization=5.0,
+            min_samples_leaf=60, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
         self.slope, self.shift = 1.0, 0.0  # of the logit, after calibration
 
     def predict(self, X):
@@ -158,6 +160,13 @@ def average_precision(y, p):
     return float((precision * y).sum() / max(y.sum(), 1))
 
 
+def regression_of(path, name):
+    """The lines of a regression that a file of weights has."""
+    text = open(path).read()
+    start = text.index(f'const LogisticWeights {name}')
+    return text[start:text.index('};', start) + 2].split('\n') + ['']
+
+
 def write(path, learnt):
     def array(v):
         return '{' + ', '.join(f'{x:.9g}' for x in v) + '}'
@@ -174,7 +183,8 @@ def write(path, learnt):
     lines = ['#include "rimod/judgement.h"', '',
              '// Written by experiments/train_judgement.py; docs/accuracy.md tells on what.', '',
              '// clang-format off', 'namespace rimod {', '']
-    lines += logistic('kProposalWeights', learnt['P']) + logistic('kRankWeights', learnt['R'])
+    for name, kind in (('kProposalWeights', 'P'), ('kRankWeights', 'R')):
+        lines += logistic(name, learnt[kind]) if kind in learnt else regression_of(path, name)
     lines += trees('kJudgementTrees', learnt['J'])
     open(path, 'w').write('\n'.join(lines + ['}  // namespace rimod', '']))
 
@@ -212,16 +222,18 @@ def main():
     parser.add_argument('--data', required=True, action='append')
     parser.add_argument('--out')
     parser.add_argument('--folds', type=int)
+    parser.add_argument('--judgement-only', action='store_true')
     parser.add_argument('--ridge', type=float, default=1.0)
     a = parser.parse_args()
     import pathlib
     models = {p.parent.name: Model(p) for folder in a.models for p in pathlib.Path(folder).glob('*/model.json')}
-    data = {kind: [] for kind in RIGHT}
+    kinds = ('J',) if a.judgement_only else tuple(RIGHT)
+    data = {kind: [] for kind in kinds}
     for n, pair in enumerate(a.data):
         labels_path, csv_path = pair.split('=')
         csv_path, _, set_weight = csv_path.partition('@')
         labels = json.load(open(labels_path))
-        for kind, (scans, names, poses, figures) in read_figures(csv_path).items():
+        for kind, (scans, names, poses, figures) in read_figures(csv_path, kinds).items():
             y, weight = label(labels, scans, names, poses, models, kind)
             centres = poses[:, :3] + np.einsum('nij,nj->ni', rotations(poses[:, 3:]), np.array([models[n].centre for n in names]))
             groups = np.array([f'{n}/{s}' for s in scans])

@@ -39,10 +39,10 @@ struct RankingParams {
   int num_models = 0;     // models that share it; 0 = those of the database
   int full_models = 8;    // >= 1
   int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1
-  ModelQuota refined{60, 120, 0.004};
+  ModelQuota refined{120, 240, 0.002};
   ModelQuota judged{8, 40, 0.01};
   // Those that a first look finds less probable are not looked at closely; 0 .. 1
-  double min_screened_score = 0.05;
+  double min_screened_score = 0.03;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
   void Validate() const;
