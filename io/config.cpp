@@ -4,21 +4,18 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
 
 #include "io/config_table.h"
+#include "io/config_value.h"
 #include "io/files.h"
 #include "io/numbers.h"
 
 namespace rimod {
 namespace {
 
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 constexpr std::int64_t kMaxFileBytes = 1'000'000;
 
 // A mistake in a configuration file.
@@ -35,92 +32,6 @@ std::string Place(const ConfigKey& key) {
 }
 
 std::string Shortened(const std::string& text) { return "'" + text.substr(0, 60) + "'"; }
-
-std::optional<double> FiniteNumber(const std::string& text) {
-  const std::optional<double> number = ParseNumber(text);
-  return number && std::isfinite(*number) ? number : std::nullopt;
-}
-
-std::optional<int> WholeNumber(const std::string& text) {
-  int value = 0;
-  const char* const end = text.data() + text.size();
-  const std::from_chars_result result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
-}
-
-// Sets the key's value from the file's text. Each returns what was expected, empty when it was
-// that.
-struct Setter {
-  const std::string& text;
-
-  std::string operator()(double* value) const {
-    const std::optional<double> number = FiniteNumber(text);
-    if (number) *value = *number;
-    return number ? "" : "a number";
-  }
-  std::string operator()(const DegreesOf& value) const {
-    const std::optional<double> degrees = FiniteNumber(text);
-    if (degrees) *value.radians = *degrees * kRadiansPerDegree;
-    return degrees ? "" : "a number of degrees";
-  }
-  std::string operator()(int* value) const {
-    const std::optional<int> number = WholeNumber(text);
-    if (number) *value = *number;
-    return number ? "" : "a whole number";
-  }
-  std::string operator()(bool* value) const {
-    if (text != "true" && text != "false") return "true or false";
-    *value = text == "true";
-    return "";
-  }
-  std::string operator()(const ChoiceOf& value) const {
-    std::string names;
-    for (std::size_t i = 0; i < value.names.size(); ++i) {
-      if (text == value.names[i]) {
-        value.set(static_cast<int>(i));
-        return "";
-      }
-      names += (i == 0 ? "" : " or ") + value.names[i];
-    }
-    return names;
-  }
-};
-
-// Shortest text that reads as the same number.
-std::string NumberText(double value) {
-  char text[64];
-  const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);
-  return std::string(text, end.ptr);
-}
-
-// Shortest text in degrees that reads as the same radians, or the nearest where there is none.
-std::string DegreesText(double radians) {
-  const double degrees = radians / kRadiansPerDegree;
-  for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
-    char text[64];
-    const std::to_chars_result end =
-        std::to_chars(text, text + sizeof text, degrees, std::chars_format::general, digits);
-    const std::string candidate(text, end.ptr);
-    if (ParseNumber(candidate).value_or(0.0) * kRadiansPerDegree == radians) return candidate;
-  }
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (const double towards : {-kInfinity, kInfinity}) {
-    const double neighbour = std::nextafter(degrees, towards);
-    if (neighbour * kRadiansPerDegree == radians) return NumberText(neighbour);
-  }
-  return NumberText(degrees);
-}
-
-struct Printer {
-  std::string operator()(const double* value) const { return NumberText(*value); }
-  std::string operator()(const DegreesOf& value) const { return DegreesText(*value.radians); }
-  std::string operator()(const int* value) const { return std::to_string(*value); }
-  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
-  std::string operator()(const ChoiceOf& value) const {
-    return value.names[static_cast<std::size_t>(value.get())];
-  }
-};
 
 // Reads one file into one configuration.
 class Reader {
@@ -189,7 +100,7 @@ class Reader {
       return Mistake{LineOf(name), Place(key) + " is there twice"};
     }
     const std::string text = value.IsScalar() ? value.Scalar() : "";
-    const std::string expected = std::visit(Setter{text}, key.value);
+    const std::string expected = SetConfigValue(key, text);
     if (expected.empty() && value.IsScalar()) return std::nullopt;
     return Mistake{LineOf(value), Place(key) + ": " + Shortened(text) + " is not " + expected};
   }
@@ -271,7 +182,7 @@ std::string DumpConfiguration(const Configuration& configuration) {
     section = key.section;
     const std::string indent = section.empty() ? "" : "  ";
     constexpr std::size_t kCommentColumn = 40;
-    std::string line = indent + key.key + ": " + std::visit(Printer(), key.value);
+    std::string line = indent + key.key + ": " + ConfigValueText(key);
     line.resize(std::max(line.size() + 1, kCommentColumn), ' ');
     text += line + "# " + key.comment + "\n";
   }
