@@ -25,7 +25,7 @@ TEST(SearchSpaceTest, ValuesStayWithinTheRangeAndReachItsEnds) {
       const double value = std::stod(dimension.ValueAt(place));
       EXPECT_GE(value, dimension.low * (dimension.low > 0 ? 0.995 : 1.005));
       EXPECT_LE(value, dimension.high * 1.005);
-      if (dimension.whole) EXPECT_EQ(value, std::round(value));
+      EXPECT_TRUE(!dimension.whole || value == std::round(value)) << value;
     }
     EXPECT_NEAR(std::stod(dimension.ValueAt(0.0)), dimension.low, 0.005 * std::abs(dimension.low));
     EXPECT_NEAR(std::stod(dimension.ValueAt(1.0)), dimension.high, 0.005 * dimension.high);

@@ -27,7 +27,7 @@ TEST(VariedParametersTest, TheShortListsAreRangesAroundTheDefaults) {
 TEST(VariedParametersTest, EveryParameterOfTheListMayBeVaried) {
   for (const TunableParameter& parameter : TunableParameters(Default())) {
     const std::string error = ErrorOf(parameter.name);
-    if (!error.empty()) EXPECT_NE(error.find("needs a range"), std::string::npos) << error;
+    EXPECT_TRUE(error.empty() || error.find("needs a range") != std::string::npos) << error;
   }
 }
 
