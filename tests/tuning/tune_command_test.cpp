@@ -25,7 +25,7 @@ class TuneCommandTest : public testing::Test {
     ASSERT_EQ(WriteModelFile(files_->PathOf("models/pile.rimod"), model), "");
     nlohmann::json labels = {{"scans", nlohmann::json::array()}};
     for (int i = 0; i < kScans; ++i) {
-      const Eigen::Isometry3d pose = Placed(2.2 + 0.1 * i, 0.6 - 0.3 * i, 0.0, 3.5 - i);
+      const Eigen::Isometry3d pose = Placed(2.2 + 0.03 * i, 0.5 - 0.03 * i, 0.0, 3.5 + 0.02 * i);
       const std::string name = "scan" + std::to_string(i);
       ASSERT_EQ(WritePcd(files_->PathOf(name + ".pcd"), PileScan(pose)), "");
       const std::array<double, 4> q = QuaternionOf(pose);
@@ -39,13 +39,10 @@ class TuneCommandTest : public testing::Test {
   }
   static void TearDownTestSuite() { files_.reset(); }
 
-  // The paper's method with few views and so few correspondences that nothing is found: there is
-  // something to be gained.
+  // The paper's method, so strict that nothing is found: there is something to be gained.
   static Configuration Settings() {
     Configuration configuration = DefaultConfiguration(Method::kPaper);
-    configuration.pipeline.model_views.azimuths = 6;
-    configuration.pipeline.model_views.elevations = 1;
-    configuration.pipeline.goodsac.max_trials = 1000;
+    configuration.pipeline.goodsac.max_trials = 5000;
     configuration.pipeline.validation.min_score = 0.99;
     return configuration;
   }
@@ -54,8 +51,8 @@ class TuneCommandTest : public testing::Test {
     TuneOptions options;
     options.models = files_->PathOf("models");
     options.labels = files_->PathOf("labels.json");
-    options.vary = {"validation.min_score=0.1..1"};
-    options.num_trials = 6;
+    options.vary = {"validation.min_score=0.05..0.2"};
+    options.num_trials = 3;
     options.num_folds = 2;
     options.num_threads = 1;
     options.out = files_->PathOf("best.yaml");
@@ -87,22 +84,23 @@ class TuneCommandTest : public testing::Test {
 std::unique_ptr<TemporaryFolder> TuneCommandTest::files_;
 
 TEST_F(TuneCommandTest, FindsWhatFindsTheObjectsWhateverTheThreads) {
-  const Outcome one = Tune(Options());
+  TuneOptions options = Options();
+  options.even_if_unclear = true;  // four scans prove little
+  const Outcome one = Tune(options);
   ASSERT_EQ(one.exit_code, 0) << one.out;
-  EXPECT_NE(one.out.find("more than chance"), std::string::npos) << one.out;
+  EXPECT_NE(one.out.find("validation.min_score: 0.99 -> "), std::string::npos) << one.out;
   const std::string yaml = files_->Read("best.yaml");
   const ConfigurationResult best = ReadConfiguration(files_->PathOf("best.yaml"));
   ASSERT_TRUE(best.configuration) << best.error;
   EXPECT_LT(best.configuration->pipeline.validation.min_score, 0.99);
-  EXPECT_EQ(best.configuration->pipeline.goodsac.max_trials, 1000);
+  EXPECT_EQ(best.configuration->pipeline.goodsac.max_trials, 5000);
   EXPECT_NE(yaml.find("Models stay as they are"), std::string::npos);
   const std::string csv = files_->Read("trials.csv");
   EXPECT_NE(csv.find("trial,validation.min_score,valid,scans,right"), std::string::npos);
   EXPECT_NE(csv.find("\n0,0.99,1,4,0,"), std::string::npos) << csv;
 
-  TuneOptions three = Options();
-  three.num_threads = 3;
-  EXPECT_EQ(Tune(three).exit_code, 0);
+  options.num_threads = 3;
+  EXPECT_EQ(Tune(options).exit_code, 0);
   EXPECT_EQ(
       ReadConfiguration(files_->PathOf("best.yaml")).configuration->pipeline.validation.min_score,
       best.configuration->pipeline.validation.min_score);
@@ -111,7 +109,7 @@ TEST_F(TuneCommandTest, FindsWhatFindsTheObjectsWhateverTheThreads) {
 TEST_F(TuneCommandTest, WithoutAGainTheParametersStay) {
   TuneOptions options = Options();
   options.vary = {"validation.min_score=0.95..1"};
-  options.num_trials = 3;
+  options.num_trials = 2;
   const Outcome outcome = Tune(options);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.out.find("The parameters stay as they are"), std::string::npos) << outcome.out;
