@@ -157,11 +157,9 @@ TrialRunner Watched(DetectorTrials* trials) {
 
 std::vector<std::string> FileHead(const std::vector<std::string>& summary,
                                   const std::string& advice) {
-  std::vector<std::string> head = {
-      "Found by rimod-tune. What differs from the method's own values:"};
-  head.insert(head.begin() + 1, summary.begin(), summary.end());
-  std::rotate(head.begin(), head.begin() + 1, head.end());
-  head.insert(head.begin(), advice);
+  std::vector<std::string> head = {"Written by rimod-tune: what differs from the method's values.",
+                                   advice};
+  head.insert(head.end(), summary.begin(), summary.end());
   return head;
 }
 

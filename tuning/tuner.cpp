@@ -45,6 +45,15 @@ std::vector<int> Tuner::Scans(bool all, int without_fold) const {
   return scans;
 }
 
+// What was found without a fold may be better in all scans than what the search in all came upon.
+void Tuner::TakeBestOfFolds(const std::vector<int>& scans) {
+  for (const int trial : result_.of_folds) {
+    if (!store_->Measure(trial, scans)) continue;
+    const double best = plan_.score(store_->Sum(result_.best, scans));
+    if (plan_.score(store_->Sum(trial, scans)) > best) result_.best = trial;
+  }
+}
+
 void Tuner::HoldOut() {
   const std::vector<int> scans = Scans(true, 0);
   const int start = store_->Add(plan_.start);
@@ -63,6 +72,7 @@ void Tuner::HoldOut() {
     result_.base_held_out += base[scan];
     result_.tuned_held_out += tuned[scan];
   }
+  TakeBestOfFolds(scans);
   result_.gain = GainOf(base, tuned, plan_.groups, plan_.score, plan_.seed);
   result_.complete = true;
 }

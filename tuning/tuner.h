@@ -22,7 +22,7 @@ struct TuningPlan {
 };
 
 struct TuningResult {
-  int best = -1;              // trial chosen with all scans; -1: none was tried in all
+  int best = -1;              // trial that is best in all scans; -1: none was tried in all
   std::vector<int> of_folds;  // trial chosen without the fold's scans; those that were finished
   bool complete = false;      // all folds were finished; what follows is known then only
   ScanCounts base_held_out;   // the start
@@ -44,6 +44,7 @@ class Tuner {
   int SearchIn(const std::vector<int>& scans, int search);
   std::vector<int> Scans(bool all, int without_fold) const;
   void HoldOut();
+  void TakeBestOfFolds(const std::vector<int>& scans);
 
   TuningPlan plan_;
   TrialStore* store_;
