@@ -73,6 +73,20 @@ class RandomValues {
     return image;
   }
 
+  // At measured points of the image, of which there must be one.
+  FeatureSet FeaturesOf(const RangeImage& image, int number, int descriptor_size) {
+    FeatureSet set = Features(number, descriptor_size);
+    for (Feature& feature : set.features) {
+      int row = 0, column = 0;
+      do {
+        row = Int(0, image.height() - 1);
+        column = Int(0, image.width() - 1);
+      } while (!image.measured(row, column));
+      feature.position = image.point(row, column);
+    }
+    return set;
+  }
+
   FeatureSet Features(int number, int descriptor_size) {
     FeatureSet set;
     set.descriptor_kind = "test kind 1.5";

@@ -120,6 +120,33 @@ TEST_F(DisorderTest, ScansOfOneUtimeAreNotMixed) {
   ExpectAllRunning();
 }
 
+// Two sweeps of one utime, of which the first's image got lost: its features are of no other image.
+TEST_F(DisorderTest, AnImageAndFeaturesOfTwoScansWithOneUtimeAreNotPaired) {
+  StartAndWait("rimod-matcher");
+  const auto image = [&](std::int64_t scan) {
+    bus_.PublishAll("RIMOD_RANGE_IMAGE", Stamped(Known(scan).image, 5));
+  };
+  const auto features = [&](std::int64_t scan) {
+    bus_.PublishAll("RIMOD_FEATURES", Stamped(Known(scan).features, 5));
+  };
+  features(2);
+  image(1);  // Known(1) is what Known(5) is
+  EXPECT_TRUE(bus_.ListenUntil(
+      [&] { return Counter("rimod-matcher", "pairs of two scans refused") == 1; }, kLong));
+  EXPECT_TRUE(bus_.Bytes("RIMOD_DETECTIONS").empty());
+  EXPECT_NE(bus_.Status("rimod-matcher")->last_error.find("scan 5"), std::string::npos);
+  EXPECT_TRUE(bus_.ListenUntil(
+      [&] { return Counter("rimod-matcher", "scans without partner") == 2; }, kLong));
+  bus_.Listen(milliseconds(600));
+  image(1);
+  image(2);
+  bus_.Listen(milliseconds(10));
+  features(1);
+  EXPECT_TRUE(WaitForDetections(5));
+  EXPECT_EQ(Detected().count(5), 1u);  // to the bit
+  ExpectAllRunning();
+}
+
 TEST_F(DisorderTest, TwoExtractorsNoticeEachOtherAndTheDetectionsStayRight) {
   StartAndWait("rimod-extractor");
   StartAndWait("rimod-matcher");
