@@ -19,6 +19,9 @@ struct SectionJoinerParams {
   std::chrono::milliseconds patience{
       5000};                              // a whole without a new section for so long is given up
   std::chrono::milliseconds memory{500};  // sections that repeat one completed so recently are late
+  // Sections come in order but for what a network may change. One that does not, after a pause of
+  // more than this, is of another whole of the same name.
+  std::chrono::milliseconds disorder{200};
 };
 
 // The default with the patience of the configuration.
@@ -30,6 +33,7 @@ struct SectionCounters {
   std::int64_t completed = 0;    // wholes
   std::int64_t incomplete = 0;   // wholes given up: a section is missing
   std::int64_t conflicting = 0;  // wholes given up: two senders of the same whole disagree
+  std::int64_t same_name = 0;    // wholes not begun: another with this header has only just ended
   std::int64_t duplicated = 0;   // sections that were there already
   std::int64_t late = 0;         // sections of a whole that is complete or was given up
   std::int64_t bad_numbers = 0;  // sections: number or total out of range
@@ -37,8 +41,11 @@ struct SectionCounters {
 
 // Joins the sections of a message type into wholes. Sections may arrive in any order, wholes
 // interleaved. Only sections whose header fields (all but section number and lists) are equal are
-// joined; of one whole a section that came twice with different content gives the whole up.
-// Section: scan_t, range_image_t, feature_set_t, object_model_t or shard_candidates_t.
+// joined; of one whole a section that came twice with different content gives the whole up. While
+// wholes with different content and equal headers follow each other within the time of memory, as
+// from a sensor whose clock stands still, only the first of them is joined: which section belongs
+// to which of the others could not be told. Section: scan_t, range_image_t, feature_set_t,
+// object_model_t or shard_candidates_t.
 template <typename Section>
 class SectionJoiner {
  public:
@@ -60,20 +67,29 @@ class SectionJoiner {
     Section header;  // without lists
     std::vector<std::optional<Section>> sections;
     int num_present = 0;
+    int highest = -1;  // number of a section that is there
     std::int64_t bytes = 0;
     Time last_change;
   };
   struct Closed {
     Section header;
-    Time when;
+    std::vector<std::uint64_t> digests;  // of its sections; 0 where none came
+    Time when;                           // it ended, or the last of its name was turned away
+    std::vector<bool> turned_away;       // sections of the whole of its name that comes now
   };
 
-  bool IsLate(const Section& section) const;
+  // Whether the section is of a whole that has ended, or has the name of one.
+  bool IsLate(const Section& section, Time now);
+  void TurnAway(std::size_t number, Closed* closed, Time now);
   Whole* FindOrOpen(const Section& section, Time now);
+  // Whether the sender must have begun another whole of the same name.
+  bool BeginsAnew(const Whole& whole, const Section& section, Time now) const;
   Whole* Oldest();
   std::vector<Section> Complete(Whole* whole, Time now);
   // Forgets an open whole, except for telling that further sections of it are late.
   void GiveUp(Whole* whole, std::int64_t* cause, Time now);
+  // What tells late sections of it, and others of its name.
+  void Remember(Whole* whole, Time now);
   void KeepWithinBounds(Time now);
 
   SectionJoinerParams params_;

@@ -110,6 +110,7 @@ void StatusReporter::SetSectionCounters(const std::string& name, const SectionCo
   const std::string dropped = kDroppedPrefix + name;
   totals_.num_dropped += Raise(dropped + " incomplete", counters.incomplete);
   totals_.num_dropped += Raise(dropped + " conflicting", counters.conflicting);
+  totals_.num_dropped += Raise(dropped + " of the name of another", counters.same_name);
   totals_.num_rejected +=
       Raise(kRejectedPrefix + name + ": sections with bad numbers", counters.bad_numbers);
   Raise(name + " sections duplicated", counters.duplicated);

@@ -111,6 +111,60 @@ TEST_F(SectionJoinerTest, ALogThatIsReplayedLaterIsJoinedAgain) {
   EXPECT_EQ(AddAll(SmallScan(1, 3)), 1);
 }
 
+// A sensor whose clock stands still, ten scans a second: nothing tells to which scan a section
+// belongs.
+TEST_F(SectionJoinerTest, OfScansWithOneNameThatFollowEachOtherOnlyTheFirstIsJoined) {
+  int num_wholes = 0;
+  for (int scan = 0; scan < 100; ++scan) {
+    for (const scan_t& section : SmallScan(1, 7, static_cast<float>(scan))) {
+      num_wholes += Add(section);
+      now_ += milliseconds(3);
+    }
+    now_ += milliseconds(79);
+  }
+  EXPECT_EQ(num_wholes, 1);
+  EXPECT_EQ(joiner_.counters().same_name, 99);
+  EXPECT_EQ(joiner_.counters().late, 99 * 7);
+  EXPECT_EQ(AddAll(SmallScan(2, 7)), 1) << "another name is another matter";
+  now_ += milliseconds(501);
+  EXPECT_EQ(AddAll(SmallScan(1, 7, 5.0f)), 1) << "after a pause the next is told apart by time";
+}
+
+// Slower ones are told apart by the pauses between them.
+TEST_F(SectionJoinerTest, OfSlowScansWithOneNameALostSectionCostsTheOneThatItIsOf) {
+  RandomValues random(7);
+  int num_wholes = 0, num_sent_whole = 0;
+  for (int scan = 0; scan < 3000; ++scan) {
+    const std::vector<scan_t> sections = SmallScan(1, 7, static_cast<float>(scan));
+    const unsigned lost = random.Int(0, 1) == 0 ? 0u : 1u << random.Int(0, 6);
+    num_sent_whole += lost == 0;
+    for (unsigned i = 0; i < 7; ++i) {
+      if (!(lost >> i & 1u)) num_wholes += Add(sections[i]);  // fails where two are mixed
+      now_ += milliseconds(3);
+    }
+    now_ += milliseconds(random.Int(510, 1500));
+  }
+  EXPECT_EQ(num_wholes, num_sent_whole);
+  EXPECT_EQ(joiner_.counters().incomplete + static_cast<int>(joiner_.num_open()),
+            3000 - num_sent_whole);
+}
+
+TEST_F(SectionJoinerTest, OfFastScansWithOneNameNoneIsMixedUnderLoss) {
+  RandomValues random(8);
+  for (int round = 0; round < 200; ++round) {
+    AddAll(SmallScan(round, 7, 0.0f));
+    const int period = random.Int(22, 450);  // ms, shorter than the memory
+    for (int scan = 1; scan < 12; ++scan) {
+      now_ += milliseconds(period - 21);
+      for (const scan_t& section : SmallScan(round, 7, static_cast<float>(scan))) {
+        if (random.Int(0, 4) != 0) Add(section);  // fails where two are mixed
+        now_ += milliseconds(3);
+      }
+    }
+  }
+  EXPECT_GT(joiner_.counters().same_name, 1000);
+}
+
 TEST_F(SectionJoinerTest, AMissingSectionCostsThatScanOnly) {
   const std::vector<scan_t> a = SmallScan(1, 3);
   EXPECT_EQ(AddAll({a[0], a[2]}), 0);
