@@ -30,6 +30,16 @@ SectionJoinerParams SectionsOf(const BusParams& bus) {
   return params;
 }
 
+// How often a turn is told: one that is lost costs so much.
+constexpr auto kTurnPeriod = std::chrono::milliseconds(100);
+
+ShardConductorParams ConductorParamsFrom(const BusParams& bus) {
+  ShardConductorParams params;
+  params.max_waiting = bus.max_waiting_scans;
+  params.patience = std::chrono::milliseconds(static_cast<int>(1e3 * bus.shard_patience));
+  return params;
+}
+
 // Of each stage the slowest shard's time; total is the slowest shard's, too.
 StageTimes SlowestOf(const std::vector<ShardAnswer>& answers) {
   StageTimes slowest;
@@ -57,12 +67,18 @@ FuserProcess::FuserProcess(lcm::LCM* in, lcm::LCM* out, const Channels& channels
       params_digest_(DigestOf(configuration.pipeline)),
       sections_(SectionsOf(configuration.bus)),
       shards_(ShardJoinerParamsFrom(configuration.bus), Clock::now()),
+      conductor_(ConductorParamsFrom(configuration.bus)),
+      instance_(NewInstance()),
       status_(out, channels.status, "rimod-fuser"),
+      senders_(in, channels.status, {channels.detections}, &status_),
       publisher_(out, configuration.bus) {
   const SubscriptionObserver observer = status_.MakeObserver();
   subscriptions_.push_back(
       SubscribeTo<shard_t>(in, channels.shards, kQueueCapacity, observer,
                            [this](const shard_t& message) { return OnShard(message); }));
+  subscriptions_.push_back(SubscribeTo<shard_scan_t>(
+      in, channels.shard_scans, kQueueCapacity, observer,
+      [this](const shard_scan_t& message) { return OnShardScan(message); }));
   subscriptions_.push_back(SubscribeTo<shard_candidates_t>(
       in, channels.shard_candidates, kQueueCapacity, observer,
       [this](shard_candidates_t section) { return OnCandidates(std::move(section)); }));
@@ -76,6 +92,25 @@ std::string FuserProcess::OnShard(const shard_t& message) {
   return error;
 }
 
+std::string FuserProcess::OnShardScan(const shard_scan_t& message) {
+  const ShardScanFromMessage read = FromMessage(message);
+  if (!read.scan) return read.error;
+  std::string error = CheckParams(read.scan->shard);
+  if (!error.empty()) return error;
+  conductor_.Hear(*read.scan, Clock::now());
+  Conduct();
+  return "";
+}
+
+void FuserProcess::Conduct() {
+  const auto now = Clock::now();
+  if (!conductor_.Advance(shards_.Present(now), now) && now < next_turn_told_) return;
+  next_turn_told_ = now + kTurnPeriod;
+  ShardTurn turn = conductor_.turn();
+  turn.fuser = instance_;
+  publisher_.Publish(channels_.shard_turns, ToMessage(turn));
+}
+
 std::string FuserProcess::OnCandidates(shard_candidates_t section) {
   const auto sections = sections_.Add(std::move(section), Clock::now());
   if (!sections) return "";
@@ -85,9 +120,11 @@ std::string FuserProcess::OnCandidates(shard_candidates_t section) {
   if (!error.empty()) return error;
   const std::int64_t num_twins = shards_.counters().twins;
   const std::string name = joined.answer->shard.name;
+  conductor_.Answered(joined.answer->shard, joined.answer->utime, joined.answer->scan);
   shards_.Add(std::move(*joined.answer), Clock::now());
   if (shards_.counters().twins > num_twins)
     status_.ReportError("twin " + name, "shard " + name + " runs twice: only one is heard");
+  Conduct();  // the shards' time is dearer than ours
   FuseDecided();
   return "";
 }
@@ -143,12 +180,16 @@ void FuserProcess::ReportOverlap(const AnsweredScan& scan) {
 
 void FuserProcess::OnIdle() {
   sections_.GiveUpStale(Clock::now());
+  Conduct();
   FuseDecided();
   ReportShards();
   status_.SetSectionCounters("candidates", sections_.counters());
+  status_.SetCounter("turns", conductor_.turn().number);
+  status_.SetCounter("turns given up", conductor_.num_given_up());
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(shards_.num_open()));
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
+  senders_.Report(Clock::now());
   status_.PublishIfDue();
 }
 

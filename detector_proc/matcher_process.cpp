@@ -63,8 +63,13 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       sweep_patience_(PatienceOf(configuration.bus) +
                       std::chrono::milliseconds(static_cast<int>(1e3 * params_.early.period))),
       status_(out, channels.status, "rimod-matcher", tempo),
-      senders_(in, channels.status, {channels.detections}, &status_),
+      // Shards that are too many are noticed by the fuser.
+      senders_(in, channels.status,
+               share.is_all() ? std::vector<std::string>{channels.detections}
+                              : std::vector<std::string>{},
+               &status_),
       publisher_(out, configuration.bus, tempo),
+      turns_(configuration.bus.max_waiting_scans),
       first_models_(std::move(models)),
       tracker_(params_.early),
       last_scan_(kNoScan) {
@@ -81,6 +86,11 @@ MatcherProcess::MatcherProcess(lcm::LCM* in, lcm::LCM* out, const Channels& chan
       in, channels.features, kQueueCapacity, observer,
       [this](feature_set_t section) { return OnFeatures(std::move(section)); }));
   if (!shard_) SubscribeToPartials(in, observer);
+  if (shard_) {
+    subscriptions_.push_back(
+        SubscribeTo<shard_turn_t>(in, channels.shard_turns, kQueueCapacity, observer,
+                                  [this](const shard_turn_t& message) { return OnTurn(message); }));
+  }
   subscriptions_.push_back(SubscribeTo<object_model_t>(
       in, channels.model, kQueueCapacity, observer,
       [this](object_model_t section) { return OnModel(std::move(section)); }));
@@ -159,8 +169,29 @@ void MatcherProcess::Give(std::optional<DescribedScan> scan) {
   if (!scan) return;
   last_scan_ = scan->utime;
   if (scan->utime == partial_sweep_) last_partial_.reset();
+  if (shard_ && !tempo_.at_once()) return GiveForTurn(std::move(*scan));
+  GiveToWorker(std::move(scan));
+}
+
+void MatcherProcess::GiveToWorker(std::optional<DescribedScan> scan) {
+  if (!scan) return;
   status_.CountDropped("scans overtaken",
                        worker_->Give({JobKind::kScan, scan->utime, std::move(*scan)}));
+}
+
+void MatcherProcess::GiveForTurn(DescribedScan scan) {
+  const std::int64_t utime = scan.utime;
+  const std::int64_t digest = DigestOf(scan);
+  GiveToWorker(turns_.Add(std::move(scan), digest, tempo_.Now()));
+  if (shard_->is_ready()) shard_->TellScan(utime, digest, /*held=*/true);
+}
+
+std::string MatcherProcess::OnTurn(const shard_turn_t& message) {
+  const ShardTurnFromMessage turn = FromMessage(message);
+  if (!turn.turn) return turn.error;
+  GiveToWorker(turns_.Hear(*turn.turn, tempo_.Now()));
+  if (turns_.TakeLacking()) shard_->TellScan(turn.turn->utime, turn.turn->scan, /*held=*/false);
+  return "";
 }
 
 void MatcherProcess::GivePartial(std::int64_t sweep_utime, std::optional<DescribedScan> scan) {
@@ -363,19 +394,38 @@ void MatcherProcess::OnIdle() {
   partial_feature_joiner_.GiveUpStale(now);
   partial_partners_.GiveUpStale(now);
   GiveUpSilentSweep();
-  if (shard_) shard_->AnnounceIfDue(now);
+  if (shard_) ReportTurns();
   status_.SetSectionCounters("range image", image_joiner_.counters());
   status_.SetSectionCounters("features", feature_joiner_.counters());
   status_.SetSectionCounters("model", model_joiner_.counters());
-  status_.SetCounter("scans without partner", partners_.num_unpaired(), true);
+  ReportPartners();
   status_.SetCounter("early looks", num_early_looks_);
   status_.SetCounter("early looks overtaken", num_early_overtaken_);
   status_.SetCounter("unsent messages", publisher_.num_failed());
   status_.SetGauge("models", num_models_);
-  status_.SetGauge(kWaitingScansCounter, static_cast<std::int64_t>(worker_->num_waiting()));
+  status_.SetGauge(kWaitingScansCounter,
+                   static_cast<std::int64_t>(worker_->num_waiting() + turns_.num_held()));
   status_.SetGauge(kWaitingMessagesCounter, publisher_.num_waiting());
   senders_.Report(tempo_.Now());
   status_.PublishIfDue();
+}
+
+void MatcherProcess::ReportTurns() {
+  const auto now = tempo_.Now();
+  shard_->AnnounceIfDue(now);
+  GiveToWorker(turns_.OnIdle(now));
+  status_.CountDropped("scans overtaken", turns_.num_overtaken() - num_passed_over_);
+  num_passed_over_ = turns_.num_overtaken();
+}
+
+void MatcherProcess::ReportPartners() {
+  status_.SetCounter("scans without partner", partners_.num_unpaired(), true);
+  status_.SetCounter("pairs of two scans refused", partners_.num_refused());
+  if (partners_.num_refused() == num_refused_told_) return;
+  num_refused_told_ = partners_.num_refused();
+  status_.ReportError("pairs refused",
+                      "scan " + std::to_string(partners_.refused_utime()) +
+                          ": range image and features of two scans with one utime are not mixed");
 }
 
 }  // namespace rimod

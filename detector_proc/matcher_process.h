@@ -25,6 +25,7 @@
 #include "io/status_reporter.h"
 #include "io/tempo.h"
 #include "io/thread_pool.h"
+#include "io/turn_taker.h"
 #include "rimod/detector.h"
 #include "rimod/early_detection.h"
 #include "rimod/feature_set_t.hpp"
@@ -32,6 +33,7 @@
 #include "rimod/partial_feature_set_t.hpp"
 #include "rimod/partial_range_image_t.hpp"
 #include "rimod/range_image_t.hpp"
+#include "rimod/shard_turn_t.hpp"
 
 namespace rimod {
 
@@ -65,8 +67,14 @@ class MatcherProcess {
   std::string OnPartialRangeImage(partial_range_image_t section);
   std::string OnPartialFeatures(partial_feature_set_t section);
   void Give(std::optional<DescribedScan> scan);
+  // As a shard: scans wait for their turn.
+  std::string OnTurn(const shard_turn_t& message);
+  void GiveForTurn(DescribedScan scan);
+  void GiveToWorker(std::optional<DescribedScan> scan);
   void GivePartial(std::int64_t sweep_utime, std::optional<DescribedScan> scan);
   void GiveUpSilentSweep();
+  void ReportPartners();
+  void ReportTurns();
 
   enum class JobKind {
     kScan,
@@ -104,6 +112,7 @@ class MatcherProcess {
   SectionJoiner<feature_set_t> feature_joiner_;
   SectionJoiner<object_model_t> model_joiner_;
   PartnerJoiner partners_;
+  std::int64_t num_refused_told_ = 0;  // of its refused pairs, in the last error
   SectionJoiner<range_image_t> partial_image_joiner_;
   SectionJoiner<feature_set_t> partial_feature_joiner_;
   PartnerJoiner partial_partners_;
@@ -114,6 +123,8 @@ class MatcherProcess {
   SenderWatch senders_;
   PacedPublisher publisher_;
   std::optional<ShardSpeaker> shard_;
+  TurnTaker turns_;
+  std::int64_t num_passed_over_ = 0;  // of its scans, counted as dropped
 
   std::mutex new_models_mutex_;
   std::map<std::string, ObjectModel> new_models_;  // by name; not in the database yet

@@ -1,7 +1,5 @@
 #include "detector_proc/shard_speaker.h"
 
-#include <unistd.h>
-
 #include <utility>
 
 namespace rimod {
@@ -23,8 +21,7 @@ ShardSpeaker::ShardSpeaker(const ModelShare& share, const PipelineParams& params
   shard_.name = share.Name();
   shard_.index = share.index;
   shard_.count = share.count;
-  // Two processes that start in the same microsecond, on two hosts, have other ids most often.
-  shard_.instance = MicrosecondsNow() ^ (static_cast<std::int64_t>(getpid()) << 40);
+  shard_.instance = NewInstance();
   shard_.params = DigestOf(params);
 }
 
@@ -34,6 +31,12 @@ void ShardSpeaker::AnnounceIfDue(Time now) {
   Shard shard = shard_;
   shard.num_models = num_models_;
   publisher_->Publish(channels_.shards, ToMessage(shard, MicrosecondsNow()));
+}
+
+void ShardSpeaker::TellScan(std::int64_t utime, std::int64_t scan, bool held) {
+  Shard shard = shard_;
+  shard.num_models = num_models_;
+  publisher_->Publish(channels_.shard_scans, ToMessage(ShardScan{shard, utime, scan, held}));
 }
 
 void ShardSpeaker::Answer(ShardAnswer answer) {

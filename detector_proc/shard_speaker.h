@@ -7,7 +7,7 @@
 #include "io/channels.h"
 #include "io/model_split.h"
 #include "io/paced_publisher.h"
-#include "io/shard_messages.h"
+#include "io/shard_turn_messages.h"
 #include "rimod/params.h"
 
 namespace rimod {
@@ -23,10 +23,13 @@ class ShardSpeaker {
 
   // That it looks for now: it is ready.
   void SetNumModels(int num_models) { num_models_ = num_models; }
+  bool is_ready() const { return num_models_ >= 0; }
   // Twice a second, once it is ready.
   void AnnounceIfDue(Time now);
   // Fills in who answers.
   void Answer(ShardAnswer answer);
+  // That the scan is here, or is not (any more).
+  void TellScan(std::int64_t utime, std::int64_t scan, bool held);
 
  private:
   Shard shard_;                      // but for the number of models

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxChannelLength = 63;  // LCM's own limit
 
-constexpr std::array<std::string Channels::*, 18> kNames = {&Channels::laser,
+constexpr std::array<std::string Channels::*, 20> kNames = {&Channels::laser,
                                                             &Channels::laser_to_local,
                                                             &Channels::scan,
                                                             &Channels::range_image,
@@ -25,6 +25,8 @@ constexpr std::array<std::string Channels::*, 18> kNames = {&Channels::laser,
                                                             &Channels::early_detections,
                                                             &Channels::shards,
                                                             &Channels::shard_candidates,
+                                                            &Channels::shard_scans,
+                                                            &Channels::shard_turns,
                                                             &Channels::status,
                                                             &Channels::preview};
 

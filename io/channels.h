@@ -23,6 +23,8 @@ struct Channels {
   std::string early_detections = "RIMOD_DETECTIONS_EARLY";        // rimod.early_detections_t
   std::string shards = "RIMOD_SHARDS";                            // rimod.shard_t
   std::string shard_candidates = "RIMOD_SHARD_CANDIDATES";        // rimod.shard_candidates_t
+  std::string shard_scans = "RIMOD_SHARD_SCANS";                  // rimod.shard_scan_t
+  std::string shard_turns = "RIMOD_SHARD_TURNS";                  // rimod.shard_turn_t
   std::string status = "RIMOD_STATUS";                            // rimod.status_t
   std::string preview = "RIMOD_PREVIEW";                          // bot_core.image_t
 };

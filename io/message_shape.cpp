@@ -17,7 +17,9 @@
 #include "rimod/scan_end_t.hpp"
 #include "rimod/scan_t.hpp"
 #include "rimod/shard_candidates_t.hpp"
+#include "rimod/shard_scan_t.hpp"
 #include "rimod/shard_t.hpp"
+#include "rimod/shard_turn_t.hpp"
 #include "rimod/status_t.hpp"
 
 namespace rimod {
@@ -225,6 +227,18 @@ void WalkShape<shard_t>(ShapeCursor* cursor) {
   cursor->Skip(kInt64);
   cursor->SkipString();
   cursor->Skip(2 * kInt32 + 2 * kInt64 + kInt32);
+}
+
+template <>
+void WalkShape<shard_scan_t>(ShapeCursor* cursor) {
+  cursor->Skip(kInt64);
+  WalkShape<shard_t>(cursor);
+  cursor->Skip(kInt64 + kByte);
+}
+
+template <>
+void WalkShape<shard_turn_t>(ShapeCursor* cursor) {
+  cursor->Skip(4 * kInt64);
 }
 
 template <>

@@ -17,6 +17,8 @@
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
 #include "rimod/scan_t.hpp"
+#include "rimod/shard_scan_t.hpp"
+#include "rimod/shard_turn_t.hpp"
 #include "rimod/status_t.hpp"
 
 namespace rimod {
@@ -37,6 +39,8 @@ void ForEachMessageType(const Visit& visit) {
   visit(static_cast<partial_range_image_t*>(nullptr));
   visit(static_cast<partial_feature_set_t*>(nullptr));
   visit(static_cast<early_detections_t*>(nullptr));
+  visit(static_cast<shard_scan_t*>(nullptr));
+  visit(static_cast<shard_turn_t*>(nullptr));
   visit(static_cast<status_t*>(nullptr));
 }
 

@@ -12,6 +12,7 @@
 #include "io/partial_messages.h"
 #include "io/range_image_messages.h"
 #include "io/scan_messages.h"
+#include "io/shard_turn_messages.h"
 #include "rimod/cloud_placer.h"
 #include "rimod/sweep_assembler.h"
 #include "tests/fuzz/input_file.h"
@@ -58,6 +59,8 @@ void Use(const partial_scan_t& message) {
 void Use(const partial_range_image_t& message) { Use(message.section); }
 void Use(const partial_feature_set_t& message) { Use(message.section); }
 void Use(const early_detections_t&) {}
+void Use(const shard_scan_t& message) { FromMessage(message); }
+void Use(const shard_turn_t& message) { FromMessage(message); }
 void Use(const status_t&) {}
 
 template <typename Message>

@@ -52,11 +52,12 @@ class MessageCodecTest : public ::testing::Test {
   std::vector<std::uint8_t> bytes_;
 };
 
-using Messages = ::testing::Types<bot_core::planar_lidar_t, bot_core::rigid_transform_t, scan_t,
-                                  range_image_t, feature_set_t, object_model_t, pose_hypotheses_t,
-                                  detections_t, status_t, bot_core::pointcloud2_t, partial_scan_t,
-                                  partial_range_image_t, partial_feature_set_t, early_detections_t,
-                                  scan_end_t, shard_t, shard_candidates_t>;
+using Messages =
+    ::testing::Types<bot_core::planar_lidar_t, bot_core::rigid_transform_t, scan_t, range_image_t,
+                     feature_set_t, object_model_t, pose_hypotheses_t, detections_t, status_t,
+                     bot_core::pointcloud2_t, partial_scan_t, partial_range_image_t,
+                     partial_feature_set_t, early_detections_t, scan_end_t, shard_t,
+                     shard_candidates_t, shard_scan_t, shard_turn_t>;
 TYPED_TEST_SUITE(MessageCodecTest, Messages);
 
 // Fails also when a field is added to a type and not to its walk.

@@ -99,7 +99,7 @@ TEST(ChannelsTest, NamesMayBeSwapped) {
 
 TEST(ChannelsTest, AllDefaultNamesDiffer) {
   std::vector<std::string> names = DefaultChannelNames();
-  EXPECT_EQ(names.size(), 18u);
+  EXPECT_EQ(names.size(), 20u);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::unique(names.begin(), names.end()), names.end());
 }

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "io/config.h"
 #include "io/detection_messages.h"
@@ -221,6 +222,70 @@ TEST_F(ShardsTest, NonsenseIsCountedAndHarmless) {
   EXPECT_TRUE(bus_.ListenUntil([&] { return bus_.Status("rimod-fuser")->num_rejected >= 3; },
                                milliseconds(10000)));
   EXPECT_TRUE(processes_["fuser"]->running());
+}
+
+// One shard is held up again and again, and scans come faster than either works.
+TEST_F(ShardsTest, UnderOverloadAllShardsLeaveOutTheSameScans) {
+  StartAll();
+  ExpectResultOf({"heap", "pile"});
+  bus_.Forget();
+  constexpr int kNumScans = 60;
+  for (int i = 0; i < kNumScans; ++i) {
+    processes_["second"]->Signal(i % 4 < 2 ? SIGSTOP : SIGCONT);
+    ++utime_;
+    bus_.PublishAll("RIMOD_RANGE_IMAGE", ToSections(image_, utime_));
+    bus_.PublishAll("RIMOD_FEATURES", ToSections(features_, utime_));
+  }
+  processes_["second"]->Signal(SIGCONT);
+  ExpectResultOf({"heap", "pile"});  // the newest is among them
+  std::int64_t num_fused = 0, num_of_all = 0;
+  for (const detections_t& message : bus_.Messages<detections_t>("RIMOD_DETECTIONS")) {
+    ++num_fused;
+    num_of_all += message.num_models == 2;
+  }
+  EXPECT_GE(num_fused, 3);
+  EXPECT_GE(10 * num_of_all, 9 * num_fused) << num_of_all << " of " << num_fused;
+  const auto num_overtaken = [this] {
+    std::map<int, std::int64_t> of_pids;
+    for (const status_t& status : bus_.Messages<status_t>("RIMOD_STATUS"))
+      if (status.process == "rimod-matcher")
+        of_pids[status.pid] = CounterOf(status, "scans overtaken");
+    return of_pids;
+  };
+  EXPECT_TRUE(bus_.ListenUntil(
+      [&] {
+        const auto of_pids = num_overtaken();
+        return of_pids.size() == 2 &&
+               std::all_of(of_pids.begin(), of_pids.end(), [&](const auto& item) {
+                 return item.second >= kNumScans - num_fused - 10;
+               });
+      },
+      kLong))
+      << "each tells what it left out";
+}
+
+TEST_F(ShardsTest, TwoFusersNoticeEachOtherAndTheShardsFollowOne) {
+  StartAll();
+  Start("second fuser", "rimod-fuser", {});
+  std::set<pid_t> noticed;
+  EXPECT_TRUE(bus_.ListenUntil(
+      [&] {
+        for (const status_t& status : bus_.Messages<status_t>("RIMOD_STATUS"))
+          if (status.process == "rimod-fuser" &&
+              CounterOf(status, "other senders on RIMOD_DETECTIONS") == 1 &&
+              status.last_error.find("too many") != std::string::npos)
+            noticed.insert(status.pid);
+        return noticed ==
+               std::set<pid_t>{processes_["fuser"]->pid(), processes_["second fuser"]->pid()};
+      },
+      kLong));
+  for (const status_t& status : bus_.Messages<status_t>("RIMOD_STATUS"))
+    if (status.process == "rimod-matcher") {
+      EXPECT_EQ(status.last_error, "") << "shards are no twins";
+    }
+  processes_["second fuser"]->Signal(SIGTERM);
+  EXPECT_EQ(processes_["second fuser"]->Wait(kLong), 0);
+  ExpectResultOf({"heap", "pile"});
 }
 
 TEST_F(ShardsTest, ThePapersMethodIsRefusedWithAReason) {

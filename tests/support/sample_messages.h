@@ -13,6 +13,7 @@
 #include "io/partial_messages.h"
 #include "io/range_image_messages.h"
 #include "io/scan_messages.h"
+#include "io/shard_turn_messages.h"
 #include "rimod/object_model_t.hpp"
 #include "rimod/status_t.hpp"
 #include "tests/io/random_answers.h"
@@ -137,6 +138,14 @@ inline early_detections_t SampleMessage() {
 template <>
 inline shard_t SampleMessage() {
   return ToMessage(Shard{"2/4", 2, 4, 5, 6, 7}, 8);
+}
+template <>
+inline shard_scan_t SampleMessage() {
+  return ToMessage(ShardScan{{"2/4", 2, 4, 5, 6, 7}, 8, 9, true});
+}
+template <>
+inline shard_turn_t SampleMessage() {
+  return ToMessage(ShardTurn{1, 2, 3, 4});
 }
 template <>
 inline shard_candidates_t SampleMessage() {
