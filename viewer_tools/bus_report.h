@@ -37,6 +37,7 @@ struct ChannelReport {
   std::int64_t num_wholes = 0;     // scans, images, .. of which every section came
   double wholes_per_second = 0.0;  // lately, or in all of a log
   double bytes_per_second = 0.0;
+  bool is_optional = false;               // of a part that not every pipeline has
   std::optional<LatencySummary> latency;  // none on channels that the pipeline reads only
 };
 

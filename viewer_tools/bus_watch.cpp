@@ -6,14 +6,25 @@
 #include <utility>
 
 #include "bot_core/planar_lidar_t.hpp"
+#include "bot_core/pointcloud2_t.hpp"
 #include "bot_core/rigid_transform_t.hpp"
 #include "io/message_codec.h"
 #include "io/status_counters.h"
 #include "rimod/detections_t.hpp"
+#include "rimod/early_detections_t.hpp"
 #include "rimod/feature_set_t.hpp"
+#include "rimod/object_model_t.hpp"
+#include "rimod/partial_feature_set_t.hpp"
+#include "rimod/partial_range_image_t.hpp"
+#include "rimod/partial_scan_t.hpp"
 #include "rimod/pose_hypotheses_t.hpp"
 #include "rimod/range_image_t.hpp"
+#include "rimod/scan_end_t.hpp"
 #include "rimod/scan_t.hpp"
+#include "rimod/shard_candidates_t.hpp"
+#include "rimod/shard_scan_t.hpp"
+#include "rimod/shard_t.hpp"
+#include "rimod/shard_turn_t.hpp"
 
 namespace rimod {
 namespace {
@@ -72,6 +83,33 @@ ArrivedSection SectionFrom(const detections_t& message) {
   return {StageOutput::kDetections, message.utime, 0, 0, 1};
 }
 
+// Whether nothing follows of what the message is a part of.
+template <typename Message>
+bool IsLastSection(const Message& /*message*/) {
+  return true;
+}
+bool IsLast(int section, int num_sections) { return section == num_sections - 1; }
+template <>
+bool IsLastSection(const object_model_t& message) {
+  return IsLast(message.section, message.num_sections);
+}
+template <>
+bool IsLastSection(const partial_scan_t& message) {
+  return IsLast(message.section.section, message.section.num_sections);
+}
+template <>
+bool IsLastSection(const partial_range_image_t& message) {
+  return IsLast(message.section.section, message.section.num_sections);
+}
+template <>
+bool IsLastSection(const partial_feature_set_t& message) {
+  return IsLast(message.section.section, message.section.num_sections);
+}
+template <>
+bool IsLastSection(const shard_candidates_t& message) {
+  return IsLast(message.section, message.num_sections);
+}
+
 std::optional<std::int64_t> CounterOf(const status_t& status, const std::string& name) {
   for (const counter_t& counter : status.counters)
     if (counter.name == name) return counter.value;
@@ -103,7 +141,7 @@ double Difference(std::int64_t a, std::int64_t b) {
 
 }  // namespace
 
-BusWatch::BusWatch(const Channels& channels, WatchSpan span)
+BusWatch::BusWatch(const Channels& channels, WatchSpan span, const CloudChannels& clouds)
     : span_(span), latency_(span == WatchSpan::kAll ? kAllScans : kLatelyScans) {
   for (const std::string& name :
        {channels.laser, channels.laser_to_local, channels.scan, channels.range_image,
@@ -112,6 +150,35 @@ BusWatch::BusWatch(const Channels& channels, WatchSpan span)
     channel.name = name;
     channels_.push_back(std::move(channel));
   }
+  AddOptional<object_model_t>(channels.model);
+  AddOptional<partial_scan_t>(channels.scan_ahead);
+  AddOptional<scan_end_t>(channels.scan_end);
+  AddOptional<partial_scan_t>(channels.partial_scan);
+  AddOptional<partial_range_image_t>(channels.partial_range_image);
+  AddOptional<partial_feature_set_t>(channels.partial_features);
+  AddOptional<early_detections_t>(channels.early_detections);
+  AddOptional<shard_t>(channels.shards);
+  AddOptional<shard_scan_t>(channels.shard_scans);
+  AddOptional<shard_turn_t>(channels.shard_turns);
+  AddOptional<shard_candidates_t>(channels.shard_candidates);
+  if (!clouds.clouds.empty()) AddOptional<bot_core::pointcloud2_t>(clouds.clouds);
+  if (!clouds.poses.empty()) AddOptional<bot_core::rigid_transform_t>(clouds.poses);
+}
+
+template <typename Message>
+void BusWatch::AddOptional(const std::string& name) {
+  Channel channel;
+  channel.name = name;
+  channel.is_optional = true;
+  channel.take = &TakeOptional<Message>;
+  channels_.push_back(std::move(channel));
+}
+
+template <typename Message>
+BusWatch::Taken BusWatch::TakeOptional(const void* bytes, std::size_t size) {
+  const Decoded<Message> decoded = DecodeMessage<Message>(bytes, size);
+  if (!decoded.message) return {decoded.error, false};
+  return {"", IsLastSection(*decoded.message)};
 }
 
 std::vector<std::string> BusWatch::channel_names() const {
@@ -157,8 +224,10 @@ BusWatch::Taken BusWatch::TakeMessage(std::size_t channel, const void* bytes, st
       return TakeSection<pose_hypotheses_t>(StageOutput::kHypotheses, bytes, size, arrival);
     case kDetections:
       return TakeSection<detections_t>(StageOutput::kDetections, bytes, size, arrival);
-    default:
+    case kStatus:
       return TakeStatus(bytes, size, arrival);
+    default:
+      return channels_[channel].take(bytes, size);
   }
 }
 
@@ -253,6 +322,7 @@ ProcessReport BusWatch::ReportOf(const Process& process, double now) const {
 ChannelReport BusWatch::ReportOf(const Channel& channel, double now) const {
   ChannelReport report;
   report.channel = channel.name;
+  report.is_optional = channel.is_optional;
   report.num_messages = channel.messages;
   report.num_wholes = channel.wholes;
   double wholes = static_cast<double>(channel.wholes);

@@ -26,7 +26,8 @@ enum class WatchSpan {
 // is bounded whatever comes.
 class BusWatch {
  public:
-  BusWatch(const Channels& channels, WatchSpan span);
+  // clouds: where scans come as point clouds, too.
+  BusWatch(const Channels& channels, WatchSpan span, const CloudChannels& clouds = {});
 
   // A message on a channel; others than the pipeline's are ignored. arrival: s, never falling.
   void Take(const std::string& channel, const void* bytes, std::size_t size, double arrival);
@@ -52,20 +53,29 @@ class BusWatch {
     std::int64_t number = 0;
     std::int64_t wholes = 0, bytes = 0;
   };
+  // Why a message cannot be used, and whether it completed something.
+  struct Taken {
+    std::string error;
+    bool is_whole = false;
+  };
   struct Channel {
     std::string name;
+    bool is_optional = false;
+    // Whether the message completes something; of optional channels.
+    Taken (*take)(const void* bytes, std::size_t size) = nullptr;
     std::int64_t messages = 0, wholes = 0, bytes = 0;
     std::deque<Second> lately;
   };
   using ProcessKey = std::tuple<std::string, std::string, std::int32_t>;  // name, host, pid
 
-  // Each returns why the message cannot be used, and whether it completed something.
-  struct Taken {
-    std::string error;
-    bool is_whole = false;
-  };
   Taken TakeMessage(std::size_t channel, const void* bytes, std::size_t size, double arrival);
   Taken TakeStatus(const void* bytes, std::size_t size, double arrival);
+  // Of one of the optional channels: the last of a message's sections completes something, whether
+  // or not all others came.
+  template <typename Message>
+  static Taken TakeOptional(const void* bytes, std::size_t size);
+  template <typename Message>
+  void AddOptional(const std::string& name);
   template <typename Message>
   Taken TakeSection(StageOutput output, const void* bytes, std::size_t size, double arrival);
   void Count(Channel* channel, std::size_t size, bool is_whole, double arrival) const;

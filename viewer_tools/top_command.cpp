@@ -57,7 +57,7 @@ int TopLive(const std::string& lcm_url, const Channels& channels, const TopOptio
   const StopOnSignal signal;
   const std::unique_ptr<lcm::LCM> lcm = OpenLcm(lcm_url);
   if (!lcm) return 1;
-  BusWatch watch(channels, WatchSpan::kLately);
+  BusWatch watch(channels, WatchSpan::kLately, options.clouds);
   const Subscriptions subscriptions = SubscribeWatch(lcm.get(), &watch);
   std::optional<TerminalScreen> screen;
   if (!options.once && !options.json) screen.emplace();
@@ -89,7 +89,7 @@ int TopLive(const std::string& lcm_url, const Channels& channels, const TopOptio
 
 int TopLog(const Channels& channels, const TopOptions& options) {
   EventLogReader log(options.log);
-  BusWatch watch(channels, WatchSpan::kAll);
+  BusWatch watch(channels, WatchSpan::kAll, options.clouds);
   double last = 0.0;
   bool first = true;
   while (const std::optional<LogEvent> event = log.Next()) {

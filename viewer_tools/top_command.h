@@ -12,6 +12,7 @@ struct TopOptions {
   bool json = false;      // a line of JSON for each report, no tables
   double listen = 3.5;    // s, how long once listens: every process tells its status each second
   double interval = 1.0;  // s, between reports
+  CloudChannels clouds;   // where scans come as point clouds, too
 };
 
 // Joins the bus and shows what goes on there until a signal comes, or once. Returns the exit code:

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   rimod::AddCommonOptions(&app, &common);
   rimod::AddBusOptions(&app, &bus);
   app.add_option("log", options.log, "A log of lcm-logger; without it the bus")->type_name("LOG");
+  rimod::AddCloudOptions(&app, &options.clouds);
   app.add_flag("--once", options.once, "Live: listen for a while, print once and end");
   app.add_flag("--json", options.json, "A line of JSON for each report; docs/running.md has keys");
   app.add_option("--listen", options.listen, "How long --once listens")

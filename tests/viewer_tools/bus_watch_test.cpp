@@ -68,6 +68,37 @@ TEST_F(BusWatchTest, RatesComeFromTheGrowthBetweenStatuses) {
   EXPECT_DOUBLE_EQ(process.silence, 0.5);
 }
 
+TEST_F(BusWatchTest, StagesThatNotEveryPipelineHasAreToldWhereTheyAreHeard) {
+  EXPECT_EQ(FormatBusReport(watch_.Report(0.0)).find("RIMOD_SHARD"), std::string::npos);
+  const auto take = [this](const std::string& channel, auto message) {
+    Take(channel, message, 1.0);
+    EXPECT_EQ(Channel(watch_.Report(2.0), channel).num_wholes, 1) << channel;
+    EXPECT_NE(FormatBusReport(watch_.Report(2.0)).find("  " + channel), std::string::npos);
+  };
+  take("RIMOD_SCAN_AHEAD", SampleMessage<partial_scan_t>());
+  take("RIMOD_SCAN_END", SampleMessage<scan_end_t>());
+  take("RIMOD_SCAN_PARTIAL", SampleMessage<partial_scan_t>());
+  take("RIMOD_RANGE_IMAGE_PARTIAL", SampleMessage<partial_range_image_t>());
+  take("RIMOD_FEATURES_PARTIAL", SampleMessage<partial_feature_set_t>());
+  take("RIMOD_DETECTIONS_EARLY", SampleMessage<early_detections_t>());
+  take("RIMOD_MODEL", SampleMessage<object_model_t>());
+  take("RIMOD_SHARDS", SampleMessage<shard_t>());
+  take("RIMOD_SHARD_SCANS", SampleMessage<shard_scan_t>());
+  take("RIMOD_SHARD_TURNS", SampleMessage<shard_turn_t>());
+  take("RIMOD_SHARD_CANDIDATES", SampleMessage<shard_candidates_t>());
+  const std::string wrong = "no message";
+  watch_.Take("RIMOD_SHARDS", wrong.data(), wrong.size(), 2.0);
+  EXPECT_EQ(watch_.Report(2.0).unusable.size(), 1u);
+}
+
+// Their channels are the user's own.
+TEST(BusWatchCloudsTest, CloudsAreAStageWhereTheyAreNamed) {
+  BusWatch watch(Channels(), WatchSpan::kAll, {"CAMERA", "CAMERA_POSE"});
+  const std::vector<std::uint8_t> cloud = EncodeMessage(SampleMessage<bot_core::pointcloud2_t>());
+  watch.Take("CAMERA", cloud.data(), cloud.size(), 1.0);
+  EXPECT_NE(FormatBusReport(watch.Report(2.0)).find("  CAMERA "), std::string::npos);
+}
+
 TEST_F(BusWatchTest, LossesAreSortedByCause) {
   Take("RIMOD_STATUS", MakeStatus(1, 1), 0.0);
   const BusReport report = watch_.Report(0.0);
