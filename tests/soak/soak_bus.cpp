@@ -61,6 +61,11 @@ SoakEar::SoakEar(lcm::LCM* lcm, SoakFigures* figures) : lcm_(lcm) {
         figures->OnScan(section);
         return std::string();
       }));
+  subscriptions_.push_back(SubscribeTo<feature_set_t>(lcm, "RIMOD_FEATURES", kPlenty, nobody,
+                                                      [figures](const feature_set_t& section) {
+                                                        figures->OnFeatures(section);
+                                                        return std::string();
+                                                      }));
   subscriptions_.push_back(SubscribeTo<detections_t>(lcm, "RIMOD_DETECTIONS", kPlenty, nobody,
                                                      [figures](const detections_t& message) {
                                                        figures->OnDetections(message, Clock::now());
@@ -107,6 +112,7 @@ void SoakFaults::Kill() {
   const int pid = figures_->PidOf(victim);
   if (pid <= 0 || kill(pid, SIGKILL) != 0) return;  // it is starting
   figures_->OnKill(victim);
+  figures_->DisturbWhatIsUnderWay(Clock::now());
   last_fault_ = Clock::now();
 }
 
@@ -120,7 +126,9 @@ void SoakFaults::SetLoss(bool wanted) {
                "add rule inet soak in udp dport 7667 meta length > 8000 "
                "numgen random mod 200 < 1 drop'"
              : "nft 'delete chain inet soak in'";
-  if (Shell(rule)) loses_ = wanted;
+  if (!Shell(rule)) return;
+  loses_ = wanted;
+  if (wanted) figures_->DisturbWhatIsUnderWay(Clock::now());
 }
 
 SoakLog ReadSoakLog(const std::string& path, const std::string& models, const std::string& folder) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rimod/detections_t.hpp"
+#include "rimod/feature_set_t.hpp"
 #include "rimod/scan_t.hpp"
 #include "rimod/status_t.hpp"
 
@@ -32,7 +33,10 @@ class SoakFigures {
   // A sweep was played to its last line; disturbed: something was killed or lost meanwhile.
   void OnSweep(std::int64_t utime, const ExpectedScan& expected, Time last_line);
   void Disturb(std::int64_t utime) { sweeps_[utime].disturbed = true; }
+  // A fault now: it may cost whatever is still on its way through the pipeline, too.
+  void DisturbWhatIsUnderWay(Time now);
   void OnScan(const scan_t& section);
+  void OnFeatures(const feature_set_t& section);
   void OnDetections(const detections_t& message, Time now);
   void OnStatus(const status_t& status);
   void OnKill(const std::string& process) { ++num_kills_[process]; }
@@ -42,6 +46,8 @@ class SoakFigures {
   // A table in markdown, and what went wrong, a line each (none: the soak is passed).
   std::string Table() const;
   std::vector<std::string> Failures() const;
+  // Sweeps without a fault that were not detected (yet).
+  int NumMissed() const;
 
  private:
   struct SweepFigures {
@@ -50,12 +56,19 @@ class SoakFigures {
     bool disturbed = false;
     bool cut = false;  // a scan of other length was sent of it: its lines paused, or a restart
     int num_right = 0, num_wrong = 0;
+    std::set<int> scan_sections, feature_sections;  // that were heard
+    int num_scan_sections = 1, num_feature_sections = 1;
+    bool has_scan() const { return static_cast<int>(scan_sections.size()) >= num_scan_sections; }
+    bool has_features() const {
+      return static_cast<int>(feature_sections.size()) >= num_feature_sections;
+    }
   };
   struct ProcessFigures {
     status_t first, last;  // of one pid
   };
   std::int64_t Total(const std::string& process, const std::string& counter_prefix) const;
-  int NumMissed() const;
+  // Sweeps without a fault that were not detected, by the process that they did not get past.
+  std::map<std::string, int> Missed() const;
 
   std::map<std::int64_t, SweepFigures> sweeps_;  // by utime
   std::map<std::string, std::map<int, ProcessFigures>> processes_;
