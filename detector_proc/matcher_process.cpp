@@ -169,7 +169,8 @@ void MatcherProcess::Give(std::optional<DescribedScan> scan) {
   if (!scan) return;
   last_scan_ = scan->utime;
   if (scan->utime == partial_sweep_) last_partial_.reset();
-  if (shard_ && !tempo_.at_once()) return GiveForTurn(std::move(*scan));
+  // The fuser knows of a shard from when it is ready.
+  if (shard_ && shard_->is_ready() && !tempo_.at_once()) return GiveForTurn(std::move(*scan));
   GiveToWorker(std::move(scan));
 }
 
@@ -183,14 +184,15 @@ void MatcherProcess::GiveForTurn(DescribedScan scan) {
   const std::int64_t utime = scan.utime;
   const std::int64_t digest = DigestOf(scan);
   GiveToWorker(turns_.Add(std::move(scan), digest, tempo_.Now()));
-  if (shard_->is_ready()) shard_->TellScan(utime, digest, /*held=*/true);
+  shard_->TellScan(utime, digest, /*held=*/true);
 }
 
 std::string MatcherProcess::OnTurn(const shard_turn_t& message) {
   const ShardTurnFromMessage turn = FromMessage(message);
   if (!turn.turn) return turn.error;
   GiveToWorker(turns_.Hear(*turn.turn, tempo_.Now()));
-  if (turns_.TakeLacking()) shard_->TellScan(turn.turn->utime, turn.turn->scan, /*held=*/false);
+  if (turns_.TakeLacking() && shard_->is_ready())
+    shard_->TellScan(turn.turn->utime, turn.turn->scan, /*held=*/false);
   return "";
 }
 

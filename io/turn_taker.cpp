@@ -11,6 +11,9 @@ constexpr auto kSilence = std::chrono::milliseconds(1000);
 
 constexpr std::size_t kMaxTaken = 8;
 
+// A turn comes within the fuser's patience where one comes at all.
+constexpr auto kLongestWait = std::chrono::milliseconds(10'000);
+
 }  // namespace
 
 bool TurnTaker::IsConducted(Time now) const { return heard_ && now - *heard_ <= kSilence; }
@@ -20,6 +23,7 @@ std::optional<DescribedScan> TurnTaker::Add(DescribedScan scan, std::int64_t dig
   // The same scan again, as when a log is replayed, waits for a turn of its own.
   const bool is_late_for_turn = turn_.number > 0 && name == ScanName(turn_.utime, turn_.scan) &&
                                 std::find(taken_.begin(), taken_.end(), name) == taken_.end();
+  if (held_.empty()) waiting_since_ = now;
   held_.push_back({name, std::move(scan)});
   if (!IsConducted(now) || is_late_for_turn) return Take(held_.size() - 1);
   if (held_.size() > max_held_) {
@@ -36,6 +40,7 @@ std::optional<DescribedScan> TurnTaker::Hear(const ShardTurn& turn, Time now) {
   if (turn.fuser == turn_.fuser && turn.number == turn_.number) return std::nullopt;
   const bool is_new_fuser = turn.fuser != turn_.fuser;
   turn_ = turn;
+  waiting_since_ = now;
   const ScanName name(turn.utime, turn.scan);
   const auto held = std::find_if(held_.begin(), held_.end(),
                                  [&name](const Held& item) { return item.name == name; });
@@ -48,7 +53,9 @@ std::optional<DescribedScan> TurnTaker::Hear(const ShardTurn& turn, Time now) {
 }
 
 std::optional<DescribedScan> TurnTaker::OnIdle(Time now) {
-  if (held_.empty() || IsConducted(now)) return std::nullopt;
+  if (held_.empty()) return std::nullopt;
+  if (IsConducted(now) && now - waiting_since_ <= kLongestWait) return std::nullopt;
+  waiting_since_ = now;
   return Take(held_.size() - 1);
 }
 

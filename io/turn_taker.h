@@ -25,7 +25,7 @@ class TurnTaker {
   // Each returns the scan to work on now; mostly nothing.
   std::optional<DescribedScan> Add(DescribedScan scan, std::int64_t digest, Time now);
   std::optional<DescribedScan> Hear(const ShardTurn& turn, Time now);
-  // Where the fuser has fallen silent.
+  // Where the fuser has fallen silent, or gives no turns, as one with other parameters.
   std::optional<DescribedScan> OnIdle(Time now);
 
   // True once after each turn of a scan that is not here: the fuser must not wait for it.
@@ -49,6 +49,7 @@ class TurnTaker {
   std::deque<Held> held_;  // oldest first
   ShardTurn turn_;
   std::optional<Time> heard_;   // the fuser
+  Time waiting_since_;          // of the held scans, or the last turn
   std::deque<ScanName> taken_;  // of late
   bool is_lacking_ = false;
   std::int64_t num_overtaken_ = 0;

@@ -197,6 +197,18 @@ TEST_F(TurnTakerTest, WhenTheFuserFallsSilentTheNewestIsWorkedOn) {
   EXPECT_EQ(Add(3), 3);
 }
 
+TEST_F(TurnTakerTest, AFuserThatGivesNoTurnsIsNotWaitedForForever) {
+  Turn(0, 0);
+  Add(1);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_FALSE(taker_.OnIdle(now_));
+    now_ += milliseconds(100);
+    Turn(0, 0);
+  }
+  now_ += milliseconds(1);
+  EXPECT_EQ(UtimeOf(taker_.OnIdle(now_)), 1);
+}
+
 TEST_F(TurnTakerTest, OfTwoFusersAllFollowTheSameOne) {
   Turn(0, 0, 7);
   Add(1);

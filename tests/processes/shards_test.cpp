@@ -14,7 +14,7 @@
 #include "io/feature_messages.h"
 #include "io/model_file.h"
 #include "io/range_image_messages.h"
-#include "io/shard_messages.h"
+#include "io/shard_turn_messages.h"
 #include "rimod/detector.h"
 #include "tests/io/random_answers.h"
 #include "tests/support/bus_probe.h"
@@ -216,6 +216,16 @@ TEST_F(ShardsTest, NonsenseIsCountedAndHarmless) {
       flipped[static_cast<std::size_t>(random.Int(8, 400))] ^=
           static_cast<std::uint8_t>(1 << random.Int(0, 7));
     bus_.Publish("RIMOD_SHARD_CANDIDATES", flipped);
+    bus_.Listen(milliseconds(1));
+  }
+  // A shard that is none has every scan; turns of a fuser that is none, for a scan that is none.
+  ShardScan scan = {answer.shard, 77, 88, true};
+  scan.shard.name = "3/4";
+  for (int i = 0; i < 50; ++i) {
+    std::vector<std::uint8_t> flipped = EncodeMessage(ToMessage(scan));
+    flipped[static_cast<std::size_t>(random.Int(8, 60))] ^= 0x10;
+    bus_.Publish("RIMOD_SHARD_SCANS", flipped);
+    bus_.Publish("RIMOD_SHARD_TURNS", ToMessage(ShardTurn{-1'000 - i, i - 10, 77, 88}));
     bus_.Listen(milliseconds(1));
   }
   ExpectResultOf({"heap", "pile"});
