@@ -60,7 +60,6 @@ std::string FormatChannels(const std::vector<ChannelReport>& channels) {
   std::vector<TextRow> rows = {{"channel", "messages", "wholes", "wholes/s", "kB/s", "p50 [ms]",
                                 "p95 [ms]", "max [ms]", "of scans"}};
   for (const ChannelReport& channel : channels) {
-    if (channel.is_optional && channel.num_messages == 0) continue;
     TextRow row = {channel.channel, std::to_string(channel.num_messages),
                    std::to_string(channel.num_wholes), FormatNumber(channel.wholes_per_second, 2),
                    FormatNumber(channel.bytes_per_second / 1e3, 1)};

@@ -37,7 +37,6 @@ struct ChannelReport {
   std::int64_t num_wholes = 0;     // scans, images, .. of which every section came
   double wholes_per_second = 0.0;  // lately, or in all of a log
   double bytes_per_second = 0.0;
-  bool is_optional = false;               // of a part that not every pipeline has
   std::optional<LatencySummary> latency;  // none on channels that the pipeline reads only
 };
 
@@ -45,8 +44,9 @@ struct BusReport {
   double duration = 0.0;  // s, watched or recorded
   LatencyOrigin origin = LatencyOrigin::kFirstOutput;
   std::vector<ProcessReport> processes;  // by name, host and pid
-  std::vector<ChannelReport> channels;   // in the order of the pipeline
-  NamedCounts unusable;                  // messages, by channel and cause
+  // In the order of the pipeline; then those that not every pipeline has, where they were heard.
+  std::vector<ChannelReport> channels;
+  NamedCounts unusable;  // messages, by channel and cause
 
   // Nothing of the pipeline was heard.
   bool empty() const;

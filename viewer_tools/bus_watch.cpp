@@ -286,8 +286,10 @@ BusReport BusWatch::Report(double now) const {
   report.duration = begin_ < 0.0 ? 0.0 : now - begin_;
   report.origin = latency_.origin();
   for (const auto& [key, process] : processes_) report.processes.push_back(ReportOf(process, now));
-  for (const Channel& channel : channels_) report.channels.push_back(ReportOf(channel, now));
-  for (std::size_t i = 0; i < channels_.size(); ++i)
+  for (const Channel& channel : channels_)
+    if (!channel.is_optional || channel.messages > 0)
+      report.channels.push_back(ReportOf(channel, now));
+  for (std::size_t i = 0; i <= kStatus; ++i)
     if (const auto output = OutputOn(i)) report.channels[i].latency = latency_.Summary(*output);
   report.unusable.assign(unusable_.begin(), unusable_.end());
   return report;
@@ -322,7 +324,6 @@ ProcessReport BusWatch::ReportOf(const Process& process, double now) const {
 ChannelReport BusWatch::ReportOf(const Channel& channel, double now) const {
   ChannelReport report;
   report.channel = channel.name;
-  report.is_optional = channel.is_optional;
   report.num_messages = channel.messages;
   report.num_wholes = channel.wholes;
   double wholes = static_cast<double>(channel.wholes);
