@@ -2,148 +2,162 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
-#include <ctime>
-#include <nlohmann/json.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
+#include "benchmarks/peers/judge.h"
+#include "benchmarks/peers/run_log.h"
 #include "io/config.h"
 #include "io/model_file.h"
-#include "io/pose_messages.h"
 #include "io/scan_source.h"
-#include "rimod/detector.h"
+#include "io/thread_pool.h"
+#include "rimod/range_image.h"
 
 namespace rimod::peers {
 namespace {
 
-Times Now() {
-  timespec cpu{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-  const std::chrono::duration<double, std::milli> wall =
-      std::chrono::steady_clock::now().time_since_epoch();
-  return {wall.count(),
-          1e3 * static_cast<double>(cpu.tv_sec) + 1e-6 * static_cast<double>(cpu.tv_nsec)};
+// How a scan is prepared.
+struct PointOptions {
+  double above_floor = 0.04;  // m, what is lower is floor
+  double max_height = 1.5;    // m above the floor: no object reaches higher
+  double wall_height = 1.7;   // m; columns that reach higher are walls and shelves. 0: kept
+};
+
+// The lowest 5 cm that hold a hundredth of the points.
+double FloorHeight(const std::vector<Eigen::Vector3f>& points) {
+  constexpr double kLayer = 0.05;
+  std::map<int, std::size_t> layers;
+  for (const Eigen::Vector3f& p : points) ++layers[static_cast<int>(std::lround(p.z() / kLayer))];
+  for (const auto& [layer, count] : layers) {
+    if (count * 100 > points.size()) return layer * kLayer;
+  }
+  return 0.0;
 }
 
-void Print(const std::string& scan, const ObjectModel& model, const Candidate& candidate) {
-  const auto q = QuaternionOf(candidate.T_scan_model);
-  const Eigen::Vector3d t = candidate.T_scan_model.translation();
-  nlohmann::ordered_json line = {{"scan", scan}, {"class", model.name}};
-  line["pose"] = {t.x(), t.y(), t.z(), q[0], q[1], q[2], q[3]};
-  line["score"] = candidate.score;
-  std::printf("%s\n", line.dump().c_str());
-  std::fflush(stdout);
+std::vector<Eigen::Vector3f> WithoutRoom(const std::vector<Eigen::Vector3f>& points,
+                                         const PointOptions& options) {
+  constexpr double kColumn = 0.1;  // m
+  const double floor = FloorHeight(points);
+  const auto column = [](const Eigen::Vector3f& p) {
+    return std::make_pair(static_cast<int>(std::floor(p.x() / kColumn)),
+                          static_cast<int>(std::floor(p.y() / kColumn)));
+  };
+  std::set<std::pair<int, int>> walls;
+  for (const Eigen::Vector3f& p : points) {
+    if (options.wall_height > 0.0 && p.z() - floor > options.wall_height) walls.insert(column(p));
+  }
+  std::vector<Eigen::Vector3f> kept;
+  for (const Eigen::Vector3f& p : points) {
+    const double height = p.z() - floor;
+    if (height < options.above_floor || height > options.max_height) continue;
+    if (walls.count(column(p)) == 0) kept.push_back(p);
+  }
+  return kept;
 }
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
+// Finds in one scan, writes what was found and how long that took.
+void Process(const NamedScan& named, const PointOptions& options, const Judge& judge, Peer* peer,
+             RunLog* log) {
+  const Judge::PreparedScan prepared = judge.Prepare(named.scan);
+  const Times begin = Now();
+  const ObjectPoints scan{WithoutRoom(named.scan.points, options),
+                          named.scan.T_local_sensor.translation()};
+  const std::vector<Proposal> proposals = peer->Find(scan);
+  const Times found = Now();
+  const std::vector<Detection> judged = judge.Choose(prepared, proposals);
+  const Times end = Now();
+  log->Write(Measure::kJudged, named.name, judged);
+  log->Write(Measure::kOwn, named.name, BestOfEachPlace(proposals, judge.models()));
+  log->Tell(named.name, scan.points.size(), proposals.size(), found - begin, end - found);
 }
 
 }  // namespace
 
 std::vector<int> FacingPoints(const ObjectModel& model, const Eigen::Isometry3d& T_scan_model,
-                              const Eigen::Vector3d& sensor) {
-  const Eigen::Vector3d eye = T_scan_model.inverse() * sensor;
+                              const Eigen::Vector3d& eye) {
+  const Eigen::Vector3d eye_model = T_scan_model.inverse() * eye;
   std::vector<int> facing;
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const Eigen::Vector3d sight = eye - model.points[i].cast<double>();
+    const Eigen::Vector3d sight = eye_model - model.points[i].cast<double>();
     if (model.normals[i].cast<double>().dot(sight) > 0.2 * sight.norm())
       facing.push_back(static_cast<int>(i));
   }
   return facing;
 }
 
-double FitOf(const ObjectModel& model, const Eigen::Isometry3d& T_scan_model, const Scene& scene) {
-  constexpr double kNear = 0.04;    // m, along the beam
-  constexpr double kEnough = 60.0;  // pixels
-  const Eigen::Isometry3d T_sensor_model = scene.image.T_local_sensor().inverse() * T_scan_model;
-  const SphericalGrid& grid = scene.image.grid();
-  std::vector<std::uint8_t> seen(static_cast<std::size_t>(grid.size()), 0);
-  double matched = 0.0, through = 0.0;
-  for (const int i :
-       FacingPoints(model, T_scan_model, scene.image.T_local_sensor().translation())) {
-    const Eigen::Vector3d p_sensor =
-        T_sensor_model * model.points[static_cast<std::size_t>(i)].cast<double>();
-    const PixelPosition position = Project(grid, p_sensor);
-    const int row = static_cast<int>(std::floor(position.row));
-    const int column = static_cast<int>(std::floor(position.column));
-    if (!grid.Contains(row, column) || !scene.image.measured(row, column)) continue;
-    std::uint8_t& pixel = seen[static_cast<std::size_t>(row * grid.width + column)];
-    const double behind = scene.image.range(row, column) - p_sensor.norm();
-    const std::uint8_t kind = behind > kNear ? 1 : behind >= -kNear ? 2 : 0;
-    if (kind <= pixel) continue;  // a pixel counts once, for what fits it best
-    if (pixel == 1) through -= 1.0;
-    (kind == 2 ? matched : through) += 1.0;
-    pixel = kind;
+std::vector<int> VisiblePoints(const ObjectModel& model, const Eigen::Vector3d& eye_model) {
+  constexpr double kBehind = 0.05;  // m, along the beam
+  Eigen::Isometry3d T_eye_model = Eigen::Isometry3d::Identity();
+  T_eye_model.translation() = -eye_model;
+  const double cell = 1.5 * model.point_spacing / eye_model.norm();  // rad
+  std::map<std::pair<int, int>, double> nearest;
+  std::vector<std::pair<std::pair<int, int>, double>> seen;
+  const std::vector<int> facing = FacingPoints(model, T_eye_model, Eigen::Vector3d::Zero());
+  for (const int i : facing) {
+    const Eigen::Vector3d p =
+        T_eye_model * model.points[static_cast<std::size_t>(i)].cast<double>();
+    const Direction direction = DirectionOf(p);
+    const std::pair<int, int> key(static_cast<int>(std::floor(direction.azimuth / cell)),
+                                  static_cast<int>(std::floor(direction.elevation / cell)));
+    seen.emplace_back(key, p.norm());
+    const auto at = nearest.emplace(key, p.norm()).first;
+    at->second = std::min(at->second, p.norm());
   }
-  if (matched <= through) return 0.0;
-  return (matched - through) / (matched + through) * std::min(1.0, matched / kEnough);
+  std::vector<int> visible;
+  for (std::size_t k = 0; k < facing.size(); ++k) {
+    if (seen[k].second < nearest[seen[k].first] + kBehind) visible.push_back(facing[k]);
+  }
+  return visible;
 }
 
 bool IsUpright(const Eigen::Isometry3d& T_scan_model) {
   return T_scan_model.linear()(2, 2) > std::cos(20.0 * M_PI / 180.0);
 }
 
-std::vector<Candidate> BestOfEachPlace(std::vector<Candidate> candidates,
-                                       const std::vector<ObjectModel>& models, double min_score) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  const auto centre = [&](const Candidate& c) -> Eigen::Vector3d {
-    return c.T_scan_model * (0.5 * (models[c.model].box_min + models[c.model].box_max));
-  };
-  std::vector<Candidate> best;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.score < min_score) break;
-    const bool taken = std::any_of(best.begin(), best.end(), [&](const Candidate& other) {
-      const double near =
-          0.25 * std::min(models[candidate.model].Diameter(), models[other.model].Diameter());
-      return (centre(candidate) - centre(other)).norm() < near;
-    });
-    if (!taken) best.push_back(candidate);
-  }
-  return best;
+Eigen::Isometry3d PoseOf(const Eigen::Matrix4d& T) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (!T.allFinite()) return pose;
+  pose.translation() = T.block<3, 1>(0, 3);
+  pose.linear() = Eigen::Quaterniond(Eigen::Matrix3d(T.block<3, 3>(0, 0))).normalized().matrix();
+  return pose;
 }
 
-int RunPeer(int argc, char** argv, const Peer& peer) {
-  CLI::App app("Finds objects with another library, for benchmarks/peers");
-  std::string models_folder;
+int RunPeer(int argc, char** argv, Peer* peer) {
+  CLI::App app("Finds objects with another library, for benchmarks/peers/run");
+  std::string models_folder, own_file;
   std::vector<std::string> scans;
-  double min_score = 0.3;
-  app.add_option("--models", models_folder)->required();
-  app.add_option("--min-score", min_score);
+  int num_threads = 1;
+  PointOptions options;
+  app.option_defaults()->always_capture_default();
+  app.add_option("--models", models_folder, "Folder of .rimod files")->required();
+  app.add_option("--threads", num_threads, "Threads that compute");
+  app.add_option("--own", own_file, "Detections scored by the library's own measure go there");
+  app.add_option("--above-floor", options.above_floor, "m, what is lower is floor");
+  app.add_option("--max-height", options.max_height, "m above the floor: no object reaches higher");
+  app.add_option("--wall-height", options.wall_height, "m; columns that reach higher are walls");
+  peer->AddOptions(&app);
   app.add_option("SCAN", scans)->required();
   CLI11_PARSE(app, argc, argv);
 
   const PipelineParams params = DefaultConfiguration(Method::kDefault).pipeline;
-  const std::vector<ObjectModel> models = LoadModelFolder(models_folder).models;
+  ThreadPool pool(num_threads);
+  const Execution execution = pool.MakeExecution();
+  const Judge judge(LoadModelFolder(models_folder).models, params, execution);
+  RunLog log(own_file);
   const Times start = Now();
-  peer.learn(models);
-  std::fprintf(stderr, "%zu models learnt in %.0f ms\n", models.size(),
-               Now().wall_ms - start.wall_ms);
-  std::vector<double> wall, cpu;
+  peer->Learn(judge.models(), num_threads, execution);
+  log.TellLearnt(judge.models().size(), Now() - start);
+  bool all_read = !judge.models().empty();
   for (const std::string& path : scans) {
-    ReadScans(path, params.sweep, [&](const NamedScan& named) {
-      Scene scene;
-      scene.scan = named.scan;
-      scene.image = ComputeRangeImage(named.scan, params, Execution());
-      const Times begin = Now();
-      std::vector<Candidate> candidates = peer.find(scene);
-      const std::size_t num_candidates = candidates.size();
-      for (Candidate& c : candidates) c.score = FitOf(models[c.model], c.T_scan_model, scene);
-      const auto best = BestOfEachPlace(std::move(candidates), models, min_score);
-      const Times end = Now();
-      for (const Candidate& candidate : best) Print(named.name, models[candidate.model], candidate);
-      wall.push_back(end.wall_ms - begin.wall_ms);
-      cpu.push_back(end.cpu_ms - begin.cpu_ms);
-      std::fprintf(stderr, "%s: %zu candidates, %zu detections, %.0f ms, processor %.0f ms\n",
-                   named.name.c_str(), num_candidates, best.size(), wall.back(), cpu.back());
+    const ScanSourceReport report = ReadScans(path, params.sweep, [&](const NamedScan& named) {
+      Process(named, options, judge, peer, &log);
     });
+    all_read = all_read && report.errors.empty();
   }
-  std::fprintf(stderr, "median of %zu scans: %.0f ms, processor %.0f ms\n", wall.size(),
-               MedianOf(wall), MedianOf(cpu));
-  return 0;
+  log.TellAll();
+  return all_read ? 0 : 1;
 }
 
 }  // namespace rimod::peers
