@@ -20,14 +20,17 @@ checks=(clang clang-format clang-tidy libclang-rt-dev ccache valgrind)
 # For the page of rimod-web and its test. npm may be there from elsewhere: Debian's is 400 packages.
 web=(chromium)
 command -v npm >/dev/null || web+=(npm)
+# For benchmarks/peers, the comparison with other libraries, alone: 315 packages.
+peers=(libpcl-dev libopencv-contrib-dev)
 
 usage() {
   cat <<'END'
-usage: ./setup.sh [--checks] [--web] [--print]
+usage: ./setup.sh [--checks] [--web] [--peers] [--print]
   --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, clang
             with its fuzzer, ccache, valgrind
   --web     also what the page of rimod-web is built and tested with: npm (where there is none yet)
             and Chromium
+  --peers   also PCL and OpenCV's contributed modules, which benchmarks/peers compares with
   --print   print the packages, one a line, and install nothing
 END
 }
@@ -37,6 +40,7 @@ for argument in "$@"; do
   case "$argument" in
     --checks) packages+=("${checks[@]}") ;;
     --web) packages+=("${web[@]}") ;;
+    --peers) packages+=("${peers[@]}") ;;
     --print) print=true ;;
     -h | --help) usage; exit 0 ;;
     *) echo "setup.sh: unknown option '$argument'" >&2; usage >&2; exit 2 ;;

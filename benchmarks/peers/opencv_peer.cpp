@@ -23,7 +23,8 @@ struct Settings {
   double sampling = 0.07;       // of the model, of its box
   double distance_step = 0.07;  // of the model's diameter
   double num_angles = 30;
-  double scene_spacing = 0.03;  // m
+  double scene_spacing = 0.03;   // m, of points that have normals
+  double scene_sampling = 0.07;  // of those, as a share of the model's diameter
   int normal_neighbours = 12;
   double scene_share = 0.2;         // of the scene's points are references
   double tile = 2.0;                // side in diameters of the model; tiles overlap by half
@@ -119,7 +120,8 @@ class PairFeatures : public rimod::peers::Peer {
     app->add_option("--sampling", s.sampling, "Spacing on the model, of its box");
     app->add_option("--distance-step", s.distance_step, "Step of distances, of the diameter");
     app->add_option("--num-angles", s.num_angles, "Steps of angles in a turn");
-    app->add_option("--scene-spacing", s.scene_spacing, "m");
+    app->add_option("--scene-spacing", s.scene_spacing, "m, of points with normals");
+    app->add_option("--scene-sampling", s.scene_sampling, "Of the model's diameter");
     app->add_option("--normal-neighbours", s.normal_neighbours, "Points that give a normal");
     app->add_option("--scene-share", s.scene_share, "Of points that are references");
     app->add_option("--tile", s.tile, "Side of the squares searched, in diameters of the model");
@@ -167,7 +169,7 @@ class PairFeatures : public rimod::peers::Peer {
     for (const cv::Mat& tile : TilesOf(rows, settings_.tile * model.Diameter())) {
       std::vector<ppf::Pose3DPtr> poses;
       detectors_[index].match(tile, poses, settings_.scene_share,
-                              settings_.scene_spacing / ExtentOf(tile));
+                              settings_.scene_sampling * model.Diameter() / ExtentOf(tile));
       std::size_t kept = 0;
       for (const ppf::Pose3DPtr& pose : poses) {
         const Eigen::Isometry3d T = IsometryOf(pose->pose);

@@ -36,7 +36,8 @@ struct Settings {
   int icp_iterations = 15;
   double icp_reach = 0.08;  // m
   bool verify = true;
-  std::size_t max_verified = 15;  // poses of a model
+  std::size_t max_verified = 5;  // poses of a model
+  int verify_iterations = 300;
   double inlier_distance = 0.04;  // m, of verification
   double regularizer = 3.0;
   double clutter_regularizer = 5.0;
@@ -76,6 +77,7 @@ class Pipeline : public rimod::peers::Peer {
     app->add_option("--icp-reach", s.icp_reach, "m");
     app->add_flag("--verify,!--no-verify", s.verify, "Global hypothesis verification");
     app->add_option("--max-verified", s.max_verified, "Poses of a model that are verified");
+    app->add_option("--verify-iterations", s.verify_iterations, "Of simulated annealing");
     app->add_option("--inlier-distance", s.inlier_distance, "m, of verification");
     app->add_option("--regularizer", s.regularizer, "Of verification: cost of what does not fit");
     app->add_option("--clutter-regularizer", s.clutter_regularizer, "Of verification");
@@ -226,6 +228,7 @@ class Pipeline : public rimod::peers::Peer {
       verification.setRadiusClutter(0.1f);
       verification.setClutterRegularizer(static_cast<float>(settings_.clutter_regularizer));
       verification.setDetectClutter(true);
+      verification.setMaxIterations(settings_.verify_iterations);
       verification.setRadiusNormals(static_cast<float>(settings_.shot.normal_radius));
       verification.verify();
       verification.getMask(right);
