@@ -2,15 +2,17 @@
 // (geometric consistency or Hough voting), ICP, hypothesis verification.
 
 #include <pcl/console/print.h>
-#include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/recognition/cg/geometric_consistency.h>
 #include <pcl/recognition/cg/hough_3d.h>
 #include <pcl/recognition/hv/hv_go.h>
 #include <pcl/registration/icp.h>
+#include <pcl/search/flann_search.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <pcl/search/impl/flann_search.hpp>
 
 #include "benchmarks/peers/pcl_features.h"
 #include "benchmarks/peers/peer.h"
@@ -26,7 +28,8 @@ using rimod::peers::Proposal;
 // Of those tried (docs/benchmarks.md) these found most.
 struct Settings {
   rimod::peers::ShotSettings shot;
-  int nearest = 3;                // correspondences of a scene's descriptor and a model
+  int checks = 200;  // leaves of FLANN's four randomised kd-trees that are looked at; -1: all
+  int nearest = 3;   // correspondences of a scene's descriptor and a model
   double max_distance_sq = 0.35;  // of descriptors
   double upright_pairs = 25;      // deg, correspondences whose frames give a greater lean; 0: kept
   bool hough = false;             // else geometric consistency
@@ -43,10 +46,12 @@ struct Settings {
   double clutter_regularizer = 5.0;
 };
 
+using DescriptorSearch = pcl::search::FlannSearch<pcl::SHOT352>;
+
 struct Model {
   const ObjectModel* model = nullptr;
   Described described;
-  pcl::KdTreeFLANN<pcl::SHOT352> tree;
+  std::shared_ptr<DescriptorSearch> search;
 };
 
 // What a correspondence's two reference frames make of the model's up.
@@ -66,6 +71,7 @@ class Pipeline : public rimod::peers::Peer {
     app->add_option("--normal-radius", s.shot.normal_radius, "m");
     app->add_option("--shot-radius", s.shot.shot_radius, "m");
     app->add_option("--views", s.shot.views, "Of a model; 0: its whole surface at once");
+    app->add_option("--checks", s.checks, "Leaves of FLANN's kd-trees that are looked at");
     app->add_option("--nearest", s.nearest, "Correspondences of a descriptor and a model");
     app->add_option("--max-distance-sq", s.max_distance_sq, "Of descriptors");
     app->add_option("--upright-pairs", s.upright_pairs, "deg, most lean by the frames; 0: any");
@@ -89,8 +95,14 @@ class Pipeline : public rimod::peers::Peer {
     execution_ = execution;
     for (const ObjectModel& model : models) {
       models_.push_back({&model, DescribeModel(model, settings_.shot, num_threads), {}});
-      if (!models_.back().described.descriptors->empty())
-        models_.back().tree.setInputCloud(models_.back().described.descriptors);
+      Model& learnt = models_.back();
+      if (learnt.described.descriptors->empty()) continue;
+      constexpr unsigned kTrees = 4;
+      learnt.search = std::make_shared<DescriptorSearch>(
+          true, DescriptorSearch::FlannIndexCreatorPtr(
+                    new DescriptorSearch::KdTreeMultiIndexCreator(kTrees)));
+      learnt.search->setChecks(settings_.checks);
+      learnt.search->setInputCloud(learnt.described.descriptors);
     }
   }
 
@@ -118,8 +130,8 @@ class Pipeline : public rimod::peers::Peer {
     pcl::Indices nearest(static_cast<std::size_t>(settings_.nearest));
     std::vector<float> distances_sq(nearest.size());
     for (std::size_t i = 0; i < scene.descriptors->size(); ++i) {
-      const int found = model.tree.nearestKSearch((*scene.descriptors)[i], settings_.nearest,
-                                                  nearest, distances_sq);
+      const int found = model.search->nearestKSearch((*scene.descriptors)[i], settings_.nearest,
+                                                     nearest, distances_sq);
       for (std::size_t k = 0; k < static_cast<std::size_t>(found); ++k) {
         if (distances_sq[k] > settings_.max_distance_sq) continue;
         const pcl::ReferenceFrame& frame =
@@ -135,7 +147,7 @@ class Pipeline : public rimod::peers::Peer {
 
   std::vector<Proposal> Groups(std::size_t index, const Described& scene) const {
     const Model& model = models_[index];
-    if (model.described.descriptors->empty()) return {};
+    if (!model.search) return {};
     std::vector<Eigen::Matrix4f, Eigen::aligned_allocator<Eigen::Matrix4f>> transforms;
     std::vector<pcl::Correspondences> groups;
     if (settings_.hough) {
