@@ -20,19 +20,20 @@ namespace ppf = cv::ppf_match_3d;
 
 // Of those tried (docs/benchmarks.md) these found most.
 struct Settings {
-  double sampling = 0.07;       // of the model, of its box
-  double distance_step = 0.07;  // of the model's diameter
+  double sampling = 0.1;       // of the model, of its box
+  double distance_step = 0.1;  // of the model's diameter
   double num_angles = 30;
-  double scene_spacing = 0.03;   // m, of points that have normals
-  double scene_sampling = 0.07;  // of those, as a share of the model's diameter
-  int normal_neighbours = 12;
-  double scene_share = 0.2;         // of the scene's points are references
-  double tile = 2.0;                // side in diameters of the model; tiles overlap by half
+  double scene_spacing = 0.05;  // m, of points that have normals
+  // Of those, as a share of the diameter; 0: all, so that the votes of models can be compared.
+  double scene_sampling = 0.0;
+  int normal_neighbours = 20;
+  double scene_share = 0.1;         // of the scene's points are references
+  double tile = 1.2;                // side in diameters of the model; tiles overlap by half
   double position_threshold = 0.1;  // m, of poses that are one
   double rotation_threshold = 15;   // deg
-  std::size_t poses_per_tile = 4;
-  std::size_t max_refined = 40;  // poses of a model
-  int icp_iterations = 20;
+  std::size_t poses_per_tile = 6;
+  std::size_t max_refined = 120;  // poses of a model
+  int icp_iterations = 0;
   double icp_rejection = 2.5;
   int icp_levels = 3;
 };
@@ -121,7 +122,7 @@ class PairFeatures : public rimod::peers::Peer {
     app->add_option("--distance-step", s.distance_step, "Step of distances, of the diameter");
     app->add_option("--num-angles", s.num_angles, "Steps of angles in a turn");
     app->add_option("--scene-spacing", s.scene_spacing, "m, of points with normals");
-    app->add_option("--scene-sampling", s.scene_sampling, "Of the model's diameter");
+    app->add_option("--scene-sampling", s.scene_sampling, "Of the model's diameter; 0: all points");
     app->add_option("--normal-neighbours", s.normal_neighbours, "Points that give a normal");
     app->add_option("--scene-share", s.scene_share, "Of points that are references");
     app->add_option("--tile", s.tile, "Side of the squares searched, in diameters of the model");
@@ -166,10 +167,12 @@ class PairFeatures : public rimod::peers::Peer {
                                   const cv::Mat& rows) {
     const ObjectModel& model = (*models_)[index];
     std::vector<std::pair<Proposal, cv::Mat>> proposed;
+    const double spacing = settings_.scene_sampling > 0.0
+                               ? settings_.scene_sampling * model.Diameter()
+                               : settings_.scene_spacing;
     for (const cv::Mat& tile : TilesOf(rows, settings_.tile * model.Diameter())) {
       std::vector<ppf::Pose3DPtr> poses;
-      detectors_[index].match(tile, poses, settings_.scene_share,
-                              settings_.scene_sampling * model.Diameter() / ExtentOf(tile));
+      detectors_[index].match(tile, poses, settings_.scene_share, spacing / ExtentOf(tile));
       std::size_t kept = 0;
       for (const ppf::Pose3DPtr& pose : poses) {
         const Eigen::Isometry3d T = IsometryOf(pose->pose);
