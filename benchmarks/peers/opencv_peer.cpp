@@ -20,8 +20,7 @@ namespace ppf = cv::ppf_match_3d;
 
 // Of those tried (docs/benchmarks.md) these found most.
 struct Settings {
-  double sampling = 0.1;       // of the model, of its box
-  double distance_step = 0.1;  // of the model's diameter
+  double sampling = 0.1;  // of the model: points by its box, distances by its diameter
   double num_angles = 30;
   double scene_spacing = 0.05;  // m, of points that have normals
   // Of those, as a share of the diameter; 0: all, so that the votes of models can be compared.
@@ -118,8 +117,8 @@ class PairFeatures : public rimod::peers::Peer {
  public:
   void AddOptions(CLI::App* app) override {
     Settings& s = settings_;
-    app->add_option("--sampling", s.sampling, "Spacing on the model, of its box");
-    app->add_option("--distance-step", s.distance_step, "Step of distances, of the diameter");
+    app->add_option("--sampling", s.sampling,
+                    "Spacing on the model, of its box; step of distances, of its diameter");
     app->add_option("--num-angles", s.num_angles, "Steps of angles in a turn");
     app->add_option("--scene-spacing", s.scene_spacing, "m, of points with normals");
     app->add_option("--scene-sampling", s.scene_sampling, "Of the model's diameter; 0: all points");
@@ -141,7 +140,8 @@ class PairFeatures : public rimod::peers::Peer {
     models_ = &models;
     execution_ = execution;
     for (std::size_t i = 0; i < models.size(); ++i) {
-      detectors_.emplace_back(settings_.sampling, settings_.distance_step, settings_.num_angles);
+      // The library (4.6) takes a step of distances and uses the sampling in its place.
+      detectors_.emplace_back(settings_.sampling, settings_.sampling, settings_.num_angles);
       detectors_.back().setSearchParams(settings_.position_threshold,
                                         settings_.rotation_threshold * CV_PI / 180.0, false);
     }
