@@ -20,7 +20,7 @@ checks=(clang clang-format clang-tidy libclang-rt-dev ccache valgrind)
 # For the page of rimod-web and its test. npm may be there from elsewhere: Debian's is 400 packages.
 web=(chromium)
 command -v npm >/dev/null || web+=(npm)
-# For benchmarks/peers, the comparison with other libraries, alone: 315 packages.
+# For benchmarks/peers, the comparison with other libraries, alone: 305 packages.
 peers=(libpcl-dev libopencv-contrib-dev)
 
 usage() {
