@@ -3,7 +3,7 @@
 
 usage: make_scenes.py --furniture FOLDER --simulator rimod-simulator --out OUT [--scenes 150] [--seed 1] [--jobs 2]
                       [--mean-visible 1.0] [--set offices|alone|tilted]
-                      [--draw-objects N] [--own-lookalikes 0.5]
+                      [--draw-objects N] [--own-lookalikes 0.5] [--coarse]
 
 FOLDER holds the .sh3f files of Debian's package sweethome3d-furniture (/usr/share/sweethome3d/furniture); the
 meshes used are cut out of them, scaled to their catalogue sizes and written to OUT/meshes. Writes
@@ -18,7 +18,8 @@ drawn again, up to ATTEMPTS times. The set "alone" has one object a scan, 1.5 to
 along its walls and far away; in the set "tilted" it hangs 2 to 4 m away, rolled and pitched by up to 25 degrees.
 
 The objects are sixteen of ours, or with --draw-objects N others that the seed draws: primitives of all sizes and meshes.
-Then a share of the look-alikes are the objects themselves in another size.
+Then a share of the look-alikes are the objects themselves in another size. With --coarse the scanner has a beam a degree and
+more noise, its scans are clouds (OUT/SET/scans/NNN.pcd), and an object is recorded from one to four places around it only.
 """
 import argparse
 import concurrent.futures
@@ -651,8 +652,12 @@ SCANNER = {'sensor': {'tilt_start_deg': -30, 'tilt_end_deg': 60, 'tilt_step_deg'
                       'max_range': 80, 'no_return': 81.91}}
 
 
+COARSE = {'tilt_step_deg': 1.0, 'angle_step_deg': 1.0, 'num_beams': 181, 'interlaced': False}
+
+
 def noise(rng):
-    return {'range_sigma': round(rng.uniform(0.007, 0.009), 4), 'range_step': 0.01, 'angle_sigma_deg': 0.02,
+    sigma = (0.008, 0.02) if SCANNER['sensor']['num_beams'] == COARSE['num_beams'] else (0.007, 0.009)
+    return {'range_sigma': round(rng.uniform(*sigma), 4), 'range_step': 0.01, 'angle_sigma_deg': 0.02,
             'beam_divergence_deg': 0.25, 'rays_per_beam': 7, 'mixing_distance': 0.4,
             'drop_out': round(rng.uniform(0.001, 0.004), 4), 'dark_signal': 0.01}
 
@@ -664,10 +669,22 @@ def simulate(simulator, arguments):
         sys.exit(f'{simulator} {arguments[0]}: {run.stderr}')
 
 
+def scan_folder():
+    return 'scans' if SCANNER['sensor']['num_beams'] == COARSE['num_beams'] else 'logs'
+
+
+def output_of(log):
+    """The simulator's option for a scan that would be this log."""
+    if log.parent.name == 'scans':
+        return '--pcd', log.with_suffix('.pcd')
+    return '--log', log
+
+
 def record(item, out, simulator, seed):
     tall = item.shape.height > 0.7
+    views = 8 if SCANNER['sensor'].get('num_beams') != COARSE['num_beams'] else random.Random(f'{seed}/views').randint(1, 4)
     scene = {**SCANNER, 'seed': seed, 'noise': noise(random.Random(seed)),
-             'recording': {'views': 8, 'distance': round(1.3 + 0.5 * item.shape.radius + 0.3 * item.shape.height, 2),
+             'recording': {'views': views, 'distance': round(1.3 + 0.5 * item.shape.radius + 0.3 * item.shape.height, 2),
                            'heights': [1.1, 0.6] if tall else [1.1]},
              'room': {'min': [-6, -6, 0], 'max': [6, 6, 3]},
              'objects': [Placed(item.shape, 0, 0, 0, 0.4, item=item, reflectivity=item.reflectivity).entry()]}
@@ -716,7 +733,7 @@ def make_hall_scan(number, out, simulator, seed, furniture, classes, tilted):
     name, item = f'{number:03d}', classes[number % len(classes)]
     folder = out / ('tilted' if tilted else 'alone')
     truth, path, log = (out / 'scenes' / f'{folder.name}_{name}.truth.json', out / 'scenes' / f'{folder.name}_{name}.yaml',
-                        folder / 'logs' / f'{name}.lcm')
+                        folder / scan_folder() / f'{name}.lcm')
     rng = random.Random(f'{seed}/{folder.name}/{number}')
     distance = rng.uniform(2, 4) if tilted else rng.uniform(1.5, 13)
     bearing = rng.uniform(-0.5, 0.5)
@@ -730,7 +747,7 @@ def make_hall_scan(number, out, simulator, seed, furniture, classes, tilted):
              'sensor': {**SCANNER['sensor'], 'position': [0, 0, round(rng.uniform(1.05, 1.3), 3)]},
              'room': {'min': HALL_MIN, 'max': HALL_MAX}, 'objects': [placed.entry()] + hall_things(rng, furniture, placed)}
     path.write_text(json.dumps(scene, indent=1))
-    simulate(simulator, [path, '--log', log, '--truth', truth])
+    simulate(simulator, [path, *output_of(log), '--truth', truth])
     objects = json.loads(truth.read_text())['scans'][0]['objects']
     truth.unlink()
     return {'scan': name, 'objects': objects}
@@ -739,14 +756,14 @@ def make_hall_scan(number, out, simulator, seed, furniture, classes, tilted):
 def make_scan(number, out, simulator, seed, furniture, classes, mean_visible):
     """The scan's labels. Scenes are drawn until every object can be seen; the best of all attempts counts."""
     name, best, items = f'{number:03d}', None, items_of(number, seed, classes)
-    truth, path, log = (out / 'scenes' / f'{name}.truth.json', out / 'scenes' / f'{name}.yaml', out / 'offices' / 'logs' / f'{name}.lcm')
+    truth, path, log = (out / 'scenes' / f'{name}.truth.json', out / 'scenes' / f'{name}.yaml', out / 'offices' / scan_folder() / f'{name}.lcm')
     for attempt in range(ATTEMPTS):
         rng = random.Random(f'{seed}/{number}/{attempt}')
         office = Office(rng, furniture, items)
         office.fill()
         text = json.dumps(office.scene(rng.randrange(1, 2**31)), indent=1)
         path.write_text(text)
-        simulate(simulator, [path, '--log', log, '--truth', truth])
+        simulate(simulator, [path, *output_of(log), '--truth', truth])
         objects = json.loads(truth.read_text())['scans'][0]['objects']
         seen = sum(o['points'] >= LEAST_POINTS and o['visible'] >= LEAST_VISIBLE for o in objects)
         visible = sum(o['visible'] for o in objects) / max(len(objects), 1)
@@ -757,7 +774,7 @@ def make_scan(number, out, simulator, seed, furniture, classes, mean_visible):
             break
     else:
         path.write_text(best[1])
-        simulate(simulator, [path, '--log', log, '--truth', truth])
+        simulate(simulator, [path, *output_of(log), '--truth', truth])
     truth.unlink()
     return {'scan': name, 'objects': best[2]}
 
@@ -774,13 +791,16 @@ def main():
     parser.add_argument('--set', default='offices', choices=('offices', 'alone', 'tilted'))
     parser.add_argument('--draw-objects', type=int, metavar='N', help='N other objects, drawn by the seed')
     parser.add_argument('--own-lookalikes', type=float, default=0.5, help='share of the look-alikes that are drawn objects in other sizes')
+    parser.add_argument('--coarse', action='store_true', help='a scanner with a beam a degree, objects recorded from few sides')
     parser.add_argument('--no-recordings', action='store_true', help='OUT has the models already')
     a = parser.parse_args()
     furniture = Furniture(a.furniture, a.out / 'meshes')
     furniture.own_lookalikes = a.own_lookalikes
     if not furniture.models:
         sys.exit(f'{a.furniture}: no .sh3f files')
-    for folder in ('scenes', f'{a.set}/logs'):
+    if a.coarse:
+        SCANNER['sensor'].update(COARSE)
+    for folder in ('scenes', f'{a.set}/{scan_folder()}'):
         (a.out / folder).mkdir(parents=True, exist_ok=True)
     classes = drawn_classes(a.seed, furniture, a.draw_objects) if a.draw_objects else object_classes(furniture)
     for piece in CHAIRS + SEATS + FLOOR_THINGS + WALL_THINGS + TOP_THINGS:
