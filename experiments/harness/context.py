@@ -120,10 +120,19 @@ class Context:
             configs = {name: name for name in configs}
         rows = []
         for name, config in configs.items():
-            found = self.detect([scan], config, simulated)
+            detections = {scan.name: self.kept_detections(scan, config, simulated)}
             rows += [{'method': name, **columns, **row}
-                     for row in self.score(found.detections, {scan.name: scan.objects}, simulated, **(limits or {}))]
+                     for row in self.score(detections, {scan.name: scan.objects}, simulated, **(limits or {}))]
         return rows
+
+    def kept_detections(self, scan, config, simulated):
+        """Of one scan; several studies that look at the same scan run the detector once."""
+        models = self.models(config, simulated)
+        key = digest_of(scan.log.read_bytes(), models, self.config(config).read_text(), self.program_digest(DETECT_PROGRAM))
+        path = self.out / 'detections' / f'{key[:32]}.json'
+        if not path.exists():
+            write_atomically(path, json.dumps(self.detect([scan], config, simulated).detections[scan.name]))
+        return json.loads(path.read_text())
 
     # ------------------------------------------------------------ results
     def figure(self, name, caption, draw, size=(7.0, 3.8)):
