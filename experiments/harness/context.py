@@ -62,6 +62,11 @@ class Context:
         scans = self.folder.scans(name)
         return scans[::5] if self.quick else scans
 
+    @staticmethod
+    def shuffled(scans):
+        """In an order that tells nothing: a part of a run has a bit of everything."""
+        return sorted(scans, key=lambda scan: digest_of(scan.name))
+
     def recordings(self, simulated):
         """Folder with a recording of every object: of the simulated ones, or of --data."""
         return self.simulated.make_recordings() if simulated else self.folder.recordings

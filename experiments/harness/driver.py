@@ -11,7 +11,7 @@ import sys
 import time
 
 from harness import context as contexts
-from harness import page
+from harness import page, style
 from harness.progress import Progress
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -33,16 +33,18 @@ def state_of(context, module):
 
 
 class UnitStore:
-    """Results of a study's units, as files."""
+    """Results of a study's units, as files. With anew it finds only what was saved by itself."""
 
-    def __init__(self, folder, state):
-        self.folder, self.state = folder, state
+    def __init__(self, folder, state, anew=False):
+        self.folder, self.state, self.anew = folder, state, anew
 
     def digest(self, unit):
         return contexts.digest_of(self.state, unit.key, json.dumps(unit.settings, sort_keys=True, default=str))
 
     def load(self, unit):
         """The unit's rows, or None when it must run (again)."""
+        if self.anew:
+            return None
         try:
             held = json.loads((self.folder / f'{unit.key}.json').read_text())
             return held['rows'] if held['digest'] == self.digest(unit) else None
@@ -61,10 +63,10 @@ def check_keys(units):
             raise ValueError(f'unit key {key!r} is used twice or is no file name')
 
 
-def run_units(name, units, store, stream):
+def run_units(name, units, store, stream, only_report=False):
     """(rows of all units that worked, {key: error})"""
     results = {u.key: store.load(u) for u in units}
-    waiting = [u for u in units if results[u.key] is None]
+    waiting = [u for u in units if results[u.key] is None and not only_report]
     progress, errors = Progress(name, len(units), len(waiting), stream), {}
     for unit in waiting:
         try:
@@ -75,6 +77,9 @@ def run_units(name, units, store, stream):
             progress.note(f'{name}: {unit.key} failed: {errors[unit.key]}')
         progress.step()
     progress.end()
+    left_out = sum(results[u.key] is None and u.key not in errors for u in units)
+    if left_out:
+        errors['not run yet'] = f'{left_out} of {len(units)} units'
     return [row for u in units for row in results[u.key] or []], errors
 
 
@@ -86,12 +91,13 @@ def write_csv(path, rows):
         writer.writerows({k: format(v, '.6g') if isinstance(v, float) else v for k, v in row.items()} for row in rows)
 
 
-def run_study(name, module, context, stream=sys.stderr):
+def run_study(name, module, context, stream=sys.stderr, only_report=False, anew=False):
     """Whether every unit worked."""
     context.study, context.figures, context.tables = name, [], []
     units = module.units(context)
     check_keys(units)
-    rows, errors = run_units(name, units, UnitStore(context.out / name / 'units', state_of(context, module)), stream)
+    store = UnitStore(context.out / name / 'units', state_of(context, module), anew)
+    rows, errors = run_units(name, units, store, stream, only_report)
     write_csv(context.out / f'{name}.csv', rows)
     findings = ''
     if rows:
@@ -126,6 +132,8 @@ def parse(arguments):
     parser.add_argument('--build', type=pathlib.Path, default=ROOT / 'build' / 'release', help='folder of the build (build/release)')
     parser.add_argument('--threads', type=int, default=1, help='that a program may use (1)')
     parser.add_argument('--quick', action='store_true', help='a part of the units, to see that all works')
+    parser.add_argument('--report', action='store_true', help='run nothing: tables and plots of what is there')
+    parser.add_argument('--anew', action='store_true', help='run everything again, e.g. after a change of experiments/harness')
     parser.add_argument('--publish', type=pathlib.Path, metavar='DIR', help='write what OUT has as Markdown with plots and CSV there, after the studies named')
     return parser.parse_args(arguments)
 
@@ -145,6 +153,8 @@ def main(arguments):
     if not names and not options.publish:
         print('experiments/run: which study? --list names them', file=sys.stderr)
         return 2
+    if names and not style.available():
+        print('experiments/run: no matplotlib for this python3: tables without plots (./setup.sh --experiments installs it)', file=sys.stderr)
     try:
         return run_all(options, {name: known[name] for name in names})
     except KeyboardInterrupt:
@@ -158,7 +168,7 @@ def main(arguments):
 def run_all(options, chosen):
     options.out.mkdir(parents=True, exist_ok=True)
     context = contexts.Context(options.out.resolve(), options.build.resolve(), options.data, options.threads, options.quick)
-    failed = [name for name, module in chosen.items() if not run_study(name, module, context)]
+    failed = [name for name, module in chosen.items() if not run_study(name, module, context, only_report=options.report, anew=options.anew)]
     page.write_html(options.out)
     if options.publish:
         page.publish(options.out, options.publish)

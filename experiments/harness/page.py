@@ -28,11 +28,12 @@ def origin(result):
     made = result.get('made', {})
     source = 'Scenes of rimod-simulator' if made.get('simulated', True) else 'Recorded sets: ' + ', '.join(made.get('data', []))
     quick = ', part of the units (--quick)' if made.get('quick') else ''
-    return f'{source}{quick}; {result["units"]} units; programs of {made.get("commit", "unknown")}, {made.get("date", "")}.'
+    left_out = ' (not run yet: ' + result['errors']['not run yet'] + ')' if 'not run yet' in result.get('errors', {}) else ''
+    return f'{source}{quick}; {result["units"]} units{left_out}; programs of {made.get("commit", "unknown")}, {made.get("date", "")}.'
 
 
 def failures(result):
-    return [f'{key}: {text}' for key, text in result.get('errors', {}).items()]
+    return [f'{key}: {text}' for key, text in result.get('errors', {}).items() if key != 'not run yet']
 
 
 # ---------------------------------------------------------------- HTML

@@ -15,7 +15,7 @@ LIMITS = {'min_visible': 0, 'min_points': 0}
 
 def units(context):
     if context.has_data('distance'):
-        return [Unit(f'data_{scan.name}', lambda scan=scan: data_work(context, scan)) for scan in context.data_scans('distance')]
+        return [Unit(f'data_{scan.name}', lambda scan=scan: data_work(context, scan)) for scan in context.shuffled(context.data_scans('distance'))]
     distances, views = (DISTANCES[::3], 1) if context.quick else (DISTANCES, VIEWS)
     return [Unit(f'{d}m_{view}', lambda d=d, view=view: work(context, d, view)) for view in range(views) for d in distances]
 
@@ -61,15 +61,18 @@ def report_mean(figure, rows):
     readings.set(yscale='log', ylabel='readings on an object (median)')
     lines, labels = axes.get_legend_handles_labels()
     more_lines, more_labels = readings.get_legend_handles_labels()
-    axes.get_legend().remove()
-    figure.legend(lines + more_lines, labels + more_labels, loc='outside upper center', ncols=3)
+    axes.legend(lines + more_lines, labels + more_labels, loc='lower center', bbox_to_anchor=(0.5, 1.01), ncols=3)
     axes.set_xlim(left=min(steps) - 1)
 
 
 def report_classes(figure, rows):
-    panels = figure.subplots(1, len(curves.methods_of(rows)), sharey=True, squeeze=False)[0]
+    methods = curves.methods_of(rows)
+    grid = figure.add_gridspec(2, len(methods), height_ratios=[8, 1])
+    panels = [figure.add_subplot(grid[0, i]) for i in range(len(methods))]
+    legend = figure.add_subplot(grid[1, :])
+    legend.axis('off')
     classes = sorted({r['class'] for r in rows if r['kind'] == 'object'})
-    for axes, method in zip(panels, curves.methods_of(rows)):
+    for axes, method in zip(panels, methods):
         for number, name in enumerate(classes):
             points = curves.rates(rows, 'step', method=method, **{'class': name})
             shift = 1.2 * (number - (len(classes) - 1) / 2)  # percent: lines that coincide stay apart
@@ -77,7 +80,7 @@ def report_classes(figure, rows):
                       color=style.CLASS_COLOURS[number % 7], marker=style.CLASS_MARKERS[number % 7])
         axes.set(xlabel='distance (m)', title=f'{method} method', ylim=(-6, 106))
     panels[0].set_ylabel('objects found (%; lines shifted a little)')
-    figure.legend(*panels[0].get_legend_handles_labels(), loc='outside lower center', ncols=4)
+    legend.legend(*panels[0].get_legend_handles_labels(), loc='center', ncols=4)
 
 
 def report_class(rows, name, methods):

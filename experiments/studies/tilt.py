@@ -14,7 +14,7 @@ LIMITS = {'min_visible': 0, 'min_points': 0}
 
 def units(context):
     if context.has_data('tilt'):
-        return [Unit(f'data_{scan.name}', lambda scan=scan: data_work(context, scan)) for scan in context.data_scans('tilt')]
+        return [Unit(f'data_{scan.name}', lambda scan=scan: data_work(context, scan)) for scan in context.shuffled(context.data_scans('tilt'))]
     angles, views = (ANGLES[::3], 1) if context.quick else (ANGLES, VIEWS)
     cases = [(angle, axis, view) for view in range(views) for angle in angles for axis in ('roll', 'pitch') if angle or axis == 'roll']
     return [Unit(f'{axis}_{angle}_{view}', lambda c=(angle, axis, view): work(context, *c)) for angle, axis, view in cases]

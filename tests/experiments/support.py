@@ -1,0 +1,5 @@
+"""Lets the tests import what experiments/run consists of."""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'experiments'))
