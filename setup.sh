@@ -22,15 +22,17 @@ web=(chromium)
 command -v npm >/dev/null || web+=(npm)
 # For benchmarks/peers, the comparison with other libraries, alone: 305 packages.
 peers=(libpcl-dev libopencv-contrib-dev)
+experiments=(python3-matplotlib sweethome3d-furniture)
 
 usage() {
   cat <<'END'
-usage: ./setup.sh [--checks] [--web] [--peers] [--print]
+usage: ./setup.sh [--checks] [--web] [--peers] [--experiments] [--print]
   --checks  also what the style checks of .ci/run use: clang-format, clang-tidy, clang
             with its fuzzer, ccache, valgrind
   --web     also what the page of rimod-web is built and tested with: npm (where there is none yet)
             and Chromium
   --peers   also PCL and OpenCV's contributed modules, which benchmarks/peers compares with
+  --experiments  also what experiments/run draws and makes scenes with: matplotlib, furniture
   --print   print the packages, one a line, and install nothing
 END
 }
@@ -41,6 +43,7 @@ for argument in "$@"; do
     --checks) packages+=("${checks[@]}") ;;
     --web) packages+=("${web[@]}") ;;
     --peers) packages+=("${peers[@]}") ;;
+    --experiments) packages+=("${experiments[@]}") ;;
     --print) print=true ;;
     -h | --help) usage; exit 0 ;;
     *) echo "setup.sh: unknown option '$argument'" >&2; usage >&2; exit 2 ;;

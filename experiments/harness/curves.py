@@ -21,13 +21,17 @@ def draw_rates(axes, points, label, look, band=True):
         axes.fill_between(x, [100 * low for low, _ in limits], [100 * high for _, high in limits], color=look['color'], alpha=0.15, linewidth=0)
 
 
-def draw_methods(figure, rows, key, x_label, legend='best'):
+def legend_above(axes, *handles_and_labels, columns=2):
+    axes.legend(*handles_and_labels, loc='lower center', bbox_to_anchor=(0.5, 1.01), ncols=columns)
+
+
+def draw_methods(figure, rows, key, x_label):
     """One axes with the rates of every method over key."""
     axes = figure.subplots()
     for method in methods_of(rows):
         draw_rates(axes, rates(rows, key, method=method), f'{method} method', style.METHOD_LOOK[method])
     axes.set(xlabel=x_label, ylabel='objects found (%)', ylim=(-3, 103))
-    axes.legend(loc=legend)
+    legend_above(axes)
     return axes
 
 

@@ -44,7 +44,7 @@ def report(context, rows):
 
 
 def report_mean(figure, rows):
-    axes = curves.draw_methods(figure, rows, 'step', 'distance (m)', 'lower left')
+    axes = curves.draw_methods(figure, rows, 'step', 'distance (m)')
     near, share = FIGURE7_NEAR
     axes.plot([0, near], [100 * share] * 2, color=style.COLOURS['black'], linestyle=':', label='paper, below 5 m (89 %)')
     axes.axvline(FIGURE7_LIMIT, color=style.COLOURS['black'], linestyle='-.', linewidth=1, label='paper: none beyond')
@@ -58,10 +58,11 @@ def report_mean(figure, rows):
     steps = sorted(counts)
     readings.plot(steps, [max(sorted(counts[s])[len(counts[s]) // 2], 1) for s in steps], color=style.COLOURS['grey'], linestyle='--', marker='^',
                   label='readings on an object')
-    readings.set(yscale='log', ylabel='readings on an object (median)')
+    readings.set(yscale='log', ylabel='readings on an object (median)', ylim=(1, 10000))
+    readings.yaxis.set_major_formatter('{x:g}')
     lines, labels = axes.get_legend_handles_labels()
     more_lines, more_labels = readings.get_legend_handles_labels()
-    axes.legend(lines + more_lines, labels + more_labels, loc='lower center', bbox_to_anchor=(0.5, 1.01), ncols=3)
+    curves.legend_above(axes, lines + more_lines, labels + more_labels, columns=3)
     axes.set_xlim(left=min(steps) - 1)
 
 

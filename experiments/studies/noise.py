@@ -21,7 +21,7 @@ def work(context, sigma, view):
 
 def report(context, rows):
     context.figure('recall', 'Objects found over the range noise.',
-                   lambda figure: curves.draw_methods(figure, rows, 'sigma_cm', 'standard deviation of a range (cm)', 'lower left'))
+                   lambda figure: curves.draw_methods(figure, rows, 'sigma_cm', 'standard deviation of a range (cm)'))
     curves.rate_table(context, 'recall', 'Found objects by noise', rows, 'sigma_cm', 'noise (cm)')
     sentences = []
     for method in curves.methods_of(rows):

@@ -28,7 +28,7 @@ def work(context, cover, view):
 def report(context, rows):
     objects = [{**r, 'bin': report_bin(r['visible'])} for r in rows if r['kind'] == 'object']
     context.figure('recall', f'Objects found over the share of them that is in view, in steps of {STEP} %.',
-                   lambda figure: curves.draw_methods(figure, objects, 'bin', 'visible share (%, middle of the step)', 'lower right'))
+                   lambda figure: curves.draw_methods(figure, objects, 'bin', 'visible share (%, middle of the step)'))
     lines = []
     for value in sorted({r['bin'] for r in objects}):
         points = {m: [p for p in curves.rates(objects, 'bin', method=m) if p[0] == value][0] for m in curves.methods_of(rows)}

@@ -47,4 +47,4 @@ def report_plot(figure, rows):
             points = curves.rates(rows, 'degrees', method=method, kind_of=kind)
             curves.draw_rates(axes, points, f'{method} method, {title}', look, band=kind == 'scanner')
     axes.set(xlabel='angle between readings, or of a pixel (degrees)', ylabel='objects found (%)', ylim=(-3, 103))
-    axes.legend(loc='lower left')
+    curves.legend_above(axes)

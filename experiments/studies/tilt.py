@@ -54,6 +54,6 @@ def report(context, rows):
 
 
 def report_plot(figure, rows):
-    axes = curves.draw_methods(figure, rows, 'angle', 'leaning from the vertical (degrees)', 'lower left')
+    axes = curves.draw_methods(figure, rows, 'angle', 'leaning from the vertical (degrees)')
     axes.axvline(TILT_LIMIT, color=style.COLOURS['black'], linestyle='-.', linewidth=1)
     axes.annotate('paper: tolerated up to here', (TILT_LIMIT, 6), xytext=(4, 0), textcoords='offset points', fontsize=8)
