@@ -46,7 +46,7 @@ def report(context, rows):
     tables = {f'{m} method': scoring.confusion([r for r in rows if r['method'] == m], classes) for m in methods}
     printed = {c: dict(zip([*CLASSES, scoring.CLUTTER], TABLE1[c])) for c in CLASSES}
     context.figure('confusion', 'Confusion tables: rows are what was reported, columns what stands there; C is clutter.',
-                   lambda figure: report_plot(figure, {**tables, 'the paper': printed}, classes), (9.0, 3.5))
+                   lambda figure: report_plot(figure, {**tables, 'the paper': printed}, classes), (9.0, 2.9))
     for name, table in tables.items():
         heads = [SHORT.get(c, c) for c in classes]
         context.table(name.split()[0], f'Confusion table, {name}', ['reported'] + heads + ['C'], [[c.replace('_', ' '), *table[c].values()] for c in classes])
