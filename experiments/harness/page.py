@@ -1,4 +1,8 @@
-"""The results of all studies found in a folder, as one HTML page or as Markdown with plots and CSV files."""
+"""The results of all studies found in a folder, as one HTML page or as Markdown with plots and CSV files.
+
+Every OUT/NAME/result.json is one, whoever wrote it: name, title, about, findings (texts); figures: [{name, caption, files in OUT}];
+tables: [{name, caption, columns, rows}]; and, if known, errors {key: text}, units, csv, command, and made {data, simulated, quick, commit, date}.
+"""
 import base64
 import html
 import json
@@ -29,7 +33,8 @@ def origin(result):
     source = 'Scenes of rimod-simulator' if made.get('simulated', True) else 'Recorded sets: ' + ', '.join(made.get('data', []))
     quick = ', part of the units (--quick)' if made.get('quick') else ''
     left_out = ' (not run yet: ' + result['errors']['not run yet'] + ')' if 'not run yet' in result.get('errors', {}) else ''
-    return f'{source}{quick}; {result["units"]} units{left_out}; programs of {made.get("commit", "unknown")}, {made.get("date", "")}.'
+    units = f'; {result["units"]} units{left_out}' if 'units' in result else ''
+    return f'{source}{quick}{units}; programs of {made.get("commit", "unknown")}, {made.get("date", "")}.'
 
 
 def failures(result):
@@ -67,7 +72,7 @@ def html_of(result, out):
         head = ''.join(f'<th>{html.escape(c)}</th>' for c in table['columns'])
         rows = ''.join('<tr>' + ''.join(f'<td>{html.escape(cell(v))}</td>' for v in row) + '</tr>' for row in table['rows'])
         parts.append(f'<table><caption>{html.escape(table["caption"])}</caption><tr>{head}</tr>{rows}</table>')
-    parts.append(f'<p>{html.escape(origin(result))} All rows: {html.escape(result["csv"])}.</p>')
+    parts.append(f'<p>{html.escape(origin(result))}' + (f' All rows: {html.escape(result["csv"])}.' if 'csv' in result else '') + '</p>')
     parts += [f'<p class="error">Failed: {html.escape(text)}</p>' for text in failures(result)]
     return parts
 

@@ -3,7 +3,7 @@ from studies import Unit
 
 TITLE = 'Resolution: how fine must the sensor look?'
 ABOUT = ('Seven objects 3 m away in an empty hall, at 0.2 to 1.0 degrees. Solid lines: beams and lines of the scanner lie this far apart and the range image has pixels as large; '
-         'dashed: only the range image does, the scanner keeps its 0.25 degrees. Models are built with the same pixels.')
+         'dashed: only the range image does, the scanner keeps its 0.25 degrees. Models are built with the same pixels; the default method enlarges them by itself where readings are too sparse.')
 RESOLUTIONS = (0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # degrees
 VIEWS = 3
 LIMITS = {'min_visible': 0, 'min_points': 0}

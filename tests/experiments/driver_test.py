@@ -161,6 +161,17 @@ class DriverTest(unittest.TestCase):
             self.assertIn(wanted, text)
         self.assertIn('squares,14', (self.folder / 'docs' / 'squares_sums.csv').read_text())
 
+    def test_pages_take_results_of_other_programs(self):
+        contexts.write_atomically(self.out / 'tune' / 'result.json', json.dumps(
+            {'name': 'tune', 'title': 'Tuned', 'about': 'About.', 'findings': 'Better.', 'figures': [], 'tables': [], 'command': 'rimod-tune --help'}))
+        self.run_study()
+        page.write_html(self.out)
+        page.publish(self.out, self.folder / 'docs')
+        self.assertIn('Tuned', (self.out / 'index.html').read_text())
+        text = (self.folder / 'docs' / 'README.md').read_text()
+        self.assertIn('    rimod-tune --help', text)
+        self.assertLess(text.index('## Squares'), text.index('## Tuned'))
+
     def test_progress_counts_what_is_left(self):
         self.run_study(numbers=[1])
         self.run_study()
