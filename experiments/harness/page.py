@@ -83,9 +83,9 @@ def publish(out, folder):
     out, folder = pathlib.Path(out), pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     found = results(out)
-    lines = ['# Experiments', '', 'Written by `experiments/run --publish docs/experiments`; [experiments/README.md](../../experiments/README.md) says how to run them.',
-             'Bands are 95 % confidence intervals.', '']
+    lines = ['# Experiments', '', 'Written by `experiments/run --publish FOLDER`; `experiments/README.md` says how to run them. Bands in plots are 95 % confidence intervals.', '']
     lines += [f'- [{r["title"]}](#{anchor(r["title"])})' for r in found]
+    lines += [f'- Other scans: [{f.parent.name.replace("_", " ")}]({f.parent.name}/README.md)' for f in sorted(folder.glob('*/README.md'))]
     for result in found:
         lines += markdown_of(result)
         for figure in result['figures']:

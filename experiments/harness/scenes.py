@@ -124,7 +124,7 @@ class SimulatedScenes:
         entries, turn = [], rng.uniform(-math.pi, math.pi)
         for place, bearing in enumerate(RING_BEARINGS):
             item, angle = items[(place + 2 * view) % len(items)], math.radians(bearing)
-            yaw = turn + 2 * math.pi * (view + 0.37 * place) / 5
+            yaw = math.remainder(turn + 2 * math.pi * (view + 0.37 * place) / 5, 2 * math.pi)
             placed = make_scenes.Placed(item.shape, distance * math.cos(angle), distance * math.sin(angle), 0, yaw, tilt, item,
                                         item.reflectivity)
             entries.append(placed.entry())

@@ -120,6 +120,7 @@ class Scenes(unittest.TestCase):
             self.assertEqual(sorted(o['class'] for o in scene['objects']), sorted(CLASSES))
             for entry in scene['objects']:
                 self.assertAlmostEqual(math.hypot(*entry['position'][:2]), 4, places=3)
+                self.assertLessEqual(abs(entry['yaw_deg']), 180)
         self.assertEqual(len({json.dumps(s['objects']) for _, s in self.started}), 5)
 
     def test_scene_is_scanned_once_and_again_when_it_changes(self):
