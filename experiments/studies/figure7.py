@@ -5,8 +5,8 @@ from studies import Unit
 from studies.paper_figures import FIGURE7_LIMIT, FIGURE7_NEAR
 
 TITLE = "Figure 7: recognition rate over distance"
-ABOUT = ('Seven objects in an empty hall, from near to so far that none is found; the dashed line counts the readings on an object. The simulator shows all seven in one scan, '
-         'five views a step as in the paper; recorded sets have one object a scan.')
+ABOUT = ('Seven objects in an empty hall, from near to so far that none is found; the dashed line counts the readings on an object. The simulator shows '
+         'all seven in one scan, five views a step as in the paper; recorded sets have one object a scan.')
 DATA = ('distance',)
 DISTANCES = (2, 3, 4, 5, 6, 8, 10, 12, 14, 17)  # m
 VIEWS = 5
@@ -31,15 +31,16 @@ def work(context, distance, view):
 
 
 def report(context, rows):
-    context.figure('recall', 'Recognition rate over distance, mean of the seven classes, with what the paper says of its own; readings on an object (median) on the right.',
+    context.figure('recall', 'Recognition rate over distance, mean of the seven classes, with what the paper says of its own; '
+                   'readings on an object (median) on the right.',
                    lambda figure: report_mean(figure, rows))
     context.figure('classes', 'Recognition rate of each class over distance.', lambda figure: report_classes(figure, rows), (7.0, 4.4))
     curves.rate_table(context, 'recall', 'Found objects by distance', rows, 'step', 'distance (m)')
     methods = curves.methods_of(rows)
     classes = sorted({r['class'] for r in rows if r['kind'] == 'object'})
-    points = {c: [r['points'] for r in rows if r['kind'] == 'object' and r['class'] == c and r['method'] == methods[0]] for c in classes}
     context.table('classes', 'Farthest distance (m) with at least half and with any of a class found, and the fewest readings on one that was found',
-                  ['class'] + [f'{m}: {w}' for m in methods for w in ('half', 'any', 'fewest readings')], [report_class(rows, c, methods) for c in points])
+                  ['class'] + [f'{m}: {w}' for m in methods for w in ('half', 'any', 'fewest readings')],
+                  [report_class(rows, c, methods) for c in classes])
     return ' '.join(report_sentence(rows, m) for m in methods) + f' The paper: {100 * FIGURE7_NEAR[1]:.0f} % below {FIGURE7_NEAR[0]:g} m, nothing beyond {FIGURE7_LIMIT:g} m.'
 
 

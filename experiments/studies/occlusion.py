@@ -2,8 +2,8 @@ from harness import curves
 from studies import Unit
 
 TITLE = 'Occlusion: how much of an object must be seen?'
-ABOUT = ('Objects of which something in front hides a part, counted by the share of their readings that is left. The simulator puts a screen before each of seven objects 3 m away; '
-         'recorded sets are the cluttered offices of Table I, where hardly any object is mostly hidden.')
+ABOUT = ('Objects of which something in front hides a part, counted by the share of their readings that is left. The simulator puts a screen '
+         'before each of seven objects 3 m away; recorded sets are the cluttered offices of Table I, where hardly any object is mostly hidden.')
 DATA = ('train',)
 COVERS = (0.0, 0.2, 0.35, 0.5, 0.6, 0.7, 0.8)  # of the object's width
 VIEWS = 4
@@ -32,14 +32,16 @@ def report(context, rows):
     lines = []
     for value in sorted({r['bin'] for r in objects}):
         points = {m: [p for p in curves.rates(objects, 'bin', method=m) if p[0] == value][0] for m in curves.methods_of(rows)}
-        lines.append([f'{value - STEP / 2:g} .. {value + STEP / 2:g}'] + [c for _, hits, count in points.values() for c in (f'{hits} of {count}', hits / count)])
+        lines.append([f'{value - STEP / 2:g} .. {value + STEP / 2:g}'] 
+                     + [c for _, hits, count in points.values() for c in (f'{hits} of {count}', hits / count)])
     context.table('recall', 'Found objects by visible share', ['visible (%)'] + [f'{m}: {w}' for m in curves.methods_of(rows) for w in ('found', 'recall')], lines)
     sentences = []
     for method in curves.methods_of(rows):
         points = curves.rates(objects, 'bin', method=method)
         parts = [[p for p in points if low < p[0] < high] for low, high in ((0, 30), (30, 60), (60, 100))]
         texts = [curves.percent(sum(p[1] for p in part) / sum(p[2] for p in part)) if part else 'none there' for part in parts]
-        sentences.append(f'The {method} method finds {texts[2]} of the objects seen to more than 60 %, {texts[1]} of those seen to 30 to 60 % and {texts[0]} of those below.')
+        sentences.append(f'The {method} method finds {texts[2]} of the objects seen to more than 60 %, {texts[1]} of those seen to 30 to 60 % '
+                         f'and {texts[0]} of those below.')
     return ' '.join(sentences)
 
 

@@ -2,8 +2,9 @@ from harness import curves, style
 from studies import Unit
 
 TITLE = 'Resolution: how fine must the sensor look?'
-ABOUT = ('Seven objects 3 m away in an empty hall, at 0.2 to 1.0 degrees. Solid lines: beams and lines of the scanner lie this far apart and the range image has pixels as large; '
-         'dashed: only the range image does, the scanner keeps its 0.25 degrees. Models are built with the same pixels; the default method enlarges them by itself where readings are too sparse.')
+ABOUT = ('Seven objects 3 m away in an empty hall, at 0.2 to 1.0 degrees. Solid lines: beams and lines of the scanner lie this far apart '
+         'and the range image has pixels as large; dashed: only the range image does, the scanner keeps its 0.25 degrees. Models are built with the same pixels; '
+         'the default method enlarges them by itself where readings are too sparse.')
 RESOLUTIONS = (0.2, 0.3, 0.4, 0.6, 0.8, 1.0)  # degrees
 VIEWS = 3
 LIMITS = {'min_visible': 0, 'min_points': 0}
@@ -26,7 +27,8 @@ def work(context, kind, degrees, view):
 
 
 def report(context, rows):
-    context.figure('recall', 'Objects found over the angle between readings (solid) or over the size of the pixels alone (dashed).', lambda figure: report_plot(figure, rows))
+    context.figure('recall', 'Objects found over the angle between readings (solid) or over the size of the pixels alone (dashed).',
+                   lambda figure: report_plot(figure, rows))
     for kind, title in KINDS.items():
         curves.rate_table(context, kind, f'Found objects, {title}', [r for r in rows if r['kind_of'] == kind], 'degrees', 'degrees a pixel')
     sentences = []

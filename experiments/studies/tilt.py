@@ -5,7 +5,8 @@ from studies import Unit
 from studies.paper_figures import TILT_LIMIT
 
 TITLE = 'Roll and pitch: how upright must objects stand?'
-ABOUT = ('Seven objects, leaning by up to 30 degrees about one of two level axes (recorded sets go to 20). The paper turns its patches by the world\'s vertical and reports that 15 degrees are tolerated.')
+ABOUT = ('Seven objects, leaning by up to 30 degrees about one of two level axes (recorded sets go to 20). '
+         'The paper turns its patches by the world\'s vertical and reports that 15 degrees are tolerated.')
 DATA = ('tilt',)
 ANGLES = (0, 5, 10, 15, 20, 25, 30)  # degrees
 VIEWS = 3
@@ -48,7 +49,8 @@ def report(context, rows):
         points = curves.rates(rows, 'angle', method=method)
         parts = [[p for p in points if wanted(p[0])] for wanted in (lambda a: a <= TILT_LIMIT, lambda a: a > TILT_LIMIT)]
         shares = [scoring.ratio(sum(p[1] for p in part), sum(p[2] for p in part)) for part in parts]
-        sentences.append(f'The {method} method finds {curves.percent(shares[0])} of those that lean by {TILT_LIMIT:g} degrees or less and {curves.percent(shares[1])} of those beyond, '
+        sentences.append(f'The {method} method finds {curves.percent(shares[0])} of those that lean by {TILT_LIMIT:g} degrees or less '
+                         f'and {curves.percent(shares[1])} of those beyond, '
                          f'up to {points[-1][0]:g} degrees.')
     return ' '.join(sentences)
 
