@@ -67,7 +67,8 @@ def run_units(name, units, store, stream, only_report=False):
     """(rows of all units that worked, {key: error})"""
     results = {u.key: store.load(u) for u in units}
     waiting = [u for u in units if results[u.key] is None and not only_report]
-    progress, errors = Progress(name, len(units), len(waiting), stream), {}
+    done = sum(rows is not None for rows in results.values())
+    progress, errors = Progress(name, len(units), done, len(waiting), stream), {}
     for unit in waiting:
         try:
             results[unit.key] = list(unit.work())

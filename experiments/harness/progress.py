@@ -3,11 +3,11 @@ import time
 
 
 class Progress:
-    def __init__(self, name, units, waiting, stream):
+    def __init__(self, name, units, done_before, waiting, stream):
         self.name, self.waiting, self.stream = name, waiting, stream
-        self.done, self.kept, self.begin = 0, units - waiting, time.monotonic()
+        self.done, self.begin = 0, time.monotonic()
         self.terminal = getattr(stream, 'isatty', lambda: False)()
-        self.print(f'{name}: {units} units, {self.kept} of them done before\n')
+        self.print(f'{name}: {units} units, {done_before} of them done before\n')
 
     def print(self, text):
         self.stream.write(text)

@@ -80,7 +80,7 @@ def report_classes(figure, rows):
             shift = 1.2 * (number - (len(classes) - 1) / 2)  # percent: lines that coincide stay apart
             axes.plot([p[0] for p in points], [100 * p[1] / p[2] + shift for p in points], label=name.replace('_', ' '),
                       color=style.CLASS_COLOURS[number % 7], marker=style.CLASS_MARKERS[number % 7])
-        axes.set(xlabel='distance (m)', title=f'{method} method', ylim=(-6, 106))
+        axes.set(xlabel='distance (m)', title=f'{method} method', ylim=(-6, 106), xticks=sorted({r['step'] for r in rows if r['step'] % 2 == 0}))
     panels[0].set_ylabel('objects found (%; lines shifted a little)')
     legend.legend(*panels[0].get_legend_handles_labels(), loc='center', ncols=4)
 

@@ -113,6 +113,7 @@ class DriverTest(unittest.TestCase):
         self.assertEqual(self.run_study(numbers=[1, 2], anew=True), [1, 2])
         self.assertEqual(self.run_study(only_report=True), [])
         self.assertEqual(self.result()['errors'], {'not run yet': '1 of 3 units'})
+        self.assertIn('3 units, 2 of them done before', self.said)
         self.assertEqual(self.result()['tables'][0]['rows'][0], ['squares', 5])
 
     def test_broken_unit_is_named_and_the_others_run(self):
