@@ -22,6 +22,7 @@ web=(chromium)
 command -v npm >/dev/null || web+=(npm)
 # For benchmarks/peers, the comparison with other libraries, alone: 305 packages.
 peers=(libpcl-dev libopencv-contrib-dev)
+# For the plots and scenes of experiments/run alone.
 experiments=(python3-matplotlib sweethome3d-furniture)
 
 usage() {
