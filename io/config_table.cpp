@@ -51,6 +51,7 @@ Keys ScanKeys(PipelineParams* p) {
 Keys FeatureKeys(PipelineParams* p) {
   InterestPointParams& i = p->interest_points;
   RangePatchParams& d = p->range_patch;
+  SphericalSpinParams& s = p->spherical_spin;
   return {
       {"interest_points", "measure", Choice(&i.measure, {"harris", "surface_change"}), "what makes a pixel interesting: harris (paper) or surface_change"},
       {"interest_points", "max_points", &i.max_points, "the strongest are kept; >= 1"},
@@ -71,6 +72,13 @@ Keys FeatureKeys(PipelineParams* p) {
       {"range_patch", "min_points", &d.min_points, "measured points needed for a normal; >= 3"},
       {"range_patch", "mask_empty_cells", &d.mask_empty_cells, "cells without a point are not compared, else they count as the mean"},
       {"range_patch", "max_vertical_cosine", &d.max_vertical_cosine, "normals nearer to the vertical have no horizontal of their own; 0 .. 1"},
+
+      {"spherical_spin", "resolution", &s.resolution, "bins of distance and of height (paper: 5); 2 .. 16"},
+      {"spherical_spin", "support_size", &s.support_size, "m, diameter and height of the cylinder (paper: 0.6); 0.02 .. 2"},
+      {"spherical_spin", "dimensions", &s.dimensions, "lowest frequencies that spin images are compressed to; 0 = not compressed .. 255"},
+      {"spherical_spin", "normal_radius", &s.normal_radius, "m, the normal is that of the points this near; 0.01 .. 2"},
+      {"spherical_spin", "normal_pixels", &s.normal_pixels, ".. but at least this many pixels, for far surfaces; 0 .. 100"},
+      {"spherical_spin", "min_points", &s.min_points, "measured points needed for a normal; >= 3"},
   };
 }
 
@@ -249,7 +257,9 @@ std::vector<ConfigKey> ConfigTable(Configuration* configuration) {
   Keys table = {
       {"", "method", Choice(&p->method, {"paper", "default"}),
        "paper (as literal as it works) or default (the best that we know): the values that "
-       "hold where this file says nothing"}};
+       "hold where this file says nothing"},
+      {"", "descriptor", Choice(&p->descriptor, {"range_patch", "spherical_spin"}),
+       "of the surface around interest points: range_patch or spherical_spin (method paper only)"}};
   for (const Keys& keys : {ScanKeys(p), FeatureKeys(p), ModelKeys(p), MatchingKeys(p),
                            ScoringKeys("scoring", &p->scoring), RejectionKeys(p),
                            ScoringKeys("validation_scoring", &p->validation.scoring),
@@ -262,11 +272,13 @@ std::vector<ConfigKey> ConfigTable(Configuration* configuration) {
 std::vector<SectionCheck> SectionChecks() {
   using C = const Configuration&;
   return {
+      {"", [](C c) { CheckDescriptor(c.pipeline); }},
       {"sweep", [](C c) { c.pipeline.sweep.Validate(); }},
       {"cloud", [](C c) { c.pipeline.cloud.Validate(); }},
       {"range_image", [](C c) { c.pipeline.range_image.Validate(); }},
       {"interest_points", [](C c) { c.pipeline.interest_points.Validate(); }},
       {"range_patch", [](C c) { c.pipeline.range_patch.Validate(); }},
+      {"spherical_spin", [](C c) { c.pipeline.spherical_spin.Validate(); }},
       {"model_surface", [](C c) { c.pipeline.model_surface.Validate(); }},
       {"model_views", [](C c) { c.pipeline.model_views.Validate(); }},
       {"matching", [](C c) { c.pipeline.matching.Validate(); }},

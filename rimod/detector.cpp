@@ -1,6 +1,7 @@
 #include "rimod/detector.h"
 
 #include <stdexcept>
+#include <string>
 
 #include "rimod/default_method.h"
 #include "rimod/paper_method.h"
@@ -10,9 +11,10 @@ namespace {
 
 void RequireFitting(const FeatureSet& features, const ModelDatabase& database,
                     const PipelineParams& params) {
-  if (features.descriptor_kind != params.range_patch.Kind()) {
+  const std::string kind = DescriptorKind(params);
+  if (features.descriptor_kind != kind) {
     throw std::invalid_argument("features are of kind '" + features.descriptor_kind + "', not '" +
-                                params.range_patch.Kind() + "'");
+                                kind + "'");
   }
   if (database.method() != params.method)
     throw std::invalid_argument("the model database was prepared for another method");

@@ -7,6 +7,7 @@
 #include "rimod/interest_points.h"
 #include "rimod/model_views.h"
 #include "rimod/range_patch.h"
+#include "rimod/spherical_spin.h"
 
 namespace rimod {
 namespace {
@@ -42,12 +43,23 @@ ModelView ComputeView(const ObjectModel& model, const Eigen::Vector3d& viewpoint
 // What a model's features depend on besides its surface.
 std::string ModelFeatureKind(const PipelineParams& params) {
   std::ostringstream kind;
-  kind << params.range_patch.Kind() << "; " << params.interest_points.Kind() << "; "
+  kind << DescriptorKind(params) << "; " << params.interest_points.Kind() << "; "
        << params.model_views.Kind() << "; pixel " << params.range_image.resolution;
   return kind.str();
 }
 
 }  // namespace
+
+std::string DescriptorKind(const PipelineParams& params) {
+  return params.descriptor == DescriptorType::kSphericalSpin ? params.spherical_spin.Kind()
+                                                             : params.range_patch.Kind();
+}
+
+int DescriptorSize(const PipelineParams& params) {
+  return params.descriptor == DescriptorType::kSphericalSpin
+             ? params.spherical_spin.DescriptorSize()
+             : params.range_patch.resolution * params.range_patch.resolution;
+}
 
 FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params,
                            const Execution& execution) {
@@ -58,12 +70,19 @@ FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params
   }
   const StageScope stage(execution, "descriptors");
   std::vector<std::optional<Feature>> described(interest_points.size());
-  execution.parallel_for(interest_points.size(), [&](std::size_t i) {
-    described[i] = DescribePatch(image, interest_points[i], params.range_patch);
-  });
+  if (params.descriptor == DescriptorType::kSphericalSpin) {
+    const SphericalSpinDescriber describe(params.spherical_spin);
+    execution.parallel_for(interest_points.size(), [&](std::size_t i) {
+      described[i] = describe(image, interest_points[i]);
+    });
+  } else {
+    execution.parallel_for(interest_points.size(), [&](std::size_t i) {
+      described[i] = DescribePatch(image, interest_points[i], params.range_patch);
+    });
+  }
   FeatureSet set;
-  set.descriptor_kind = params.range_patch.Kind();
-  set.descriptor_size = params.range_patch.resolution * params.range_patch.resolution;
+  set.descriptor_kind = DescriptorKind(params);
+  set.descriptor_size = DescriptorSize(params);
   for (std::optional<Feature>& feature : described)
     if (feature) set.features.push_back(std::move(*feature));
   return set;
@@ -78,13 +97,13 @@ void ComputeModelViews(const PipelineParams& params, const Execution& execution,
   });
   model->views = std::move(views);
   model->descriptor_kind = ModelFeatureKind(params);
-  model->descriptor_size = params.range_patch.resolution * params.range_patch.resolution;
+  model->descriptor_size = DescriptorSize(params);
 }
 
 bool ModelMatchesParams(const ObjectModel& model, const PipelineParams& params) {
   // The size too: a model from elsewhere may claim a kind that its descriptors are not of.
   return model.descriptor_kind == ModelFeatureKind(params) &&
-         model.descriptor_size == params.range_patch.resolution * params.range_patch.resolution;
+         model.descriptor_size == DescriptorSize(params);
 }
 
 }  // namespace rimod

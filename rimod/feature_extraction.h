@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "rimod/execution.h"
 #include "rimod/features.h"
 #include "rimod/object_model.h"
@@ -7,6 +9,10 @@
 #include "rimod/range_image.h"
 
 namespace rimod {
+
+// Of the features that these parameters give: FeatureSet's descriptor_kind and descriptor_size.
+std::string DescriptorKind(const PipelineParams& params);
+int DescriptorSize(const PipelineParams& params);
 
 // The features of a range image: interest points with descriptors, strongest first (paper, section
 // III-A). Stages interest_points and descriptors. Points without a normal are left out.

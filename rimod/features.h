@@ -12,6 +12,12 @@ using Descriptor = std::vector<std::int16_t>;
 constexpr double kDescriptorUnit = 1e-4;  // m
 constexpr std::int16_t kEmptyCell = INT16_MIN;
 
+// What describes the surface around an interest point.
+enum class DescriptorType {
+  kRangePatch,     // range_patch.h, the paper's (section III-A)
+  kSphericalSpin,  // spherical_spin.h, the one that it is compared with (section IV)
+};
+
 // A place on a surface.
 struct OrientedPoint {
   Eigen::Vector3f position =

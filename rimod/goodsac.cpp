@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <random>
 
 #include "rimod/absolute_orientation.h"
 #include "rimod/check.h"
@@ -103,6 +104,11 @@ std::vector<Pair> BestPairs(std::vector<Correspondence> correspondences,
   return pairs;
 }
 
+// A number from [0, size), 1 <= size <= 2^32, the same from every standard library.
+std::size_t Below(std::size_t size, std::mt19937* random) {
+  return static_cast<std::size_t>((static_cast<std::uint64_t>((*random)()) * size) >> 32);
+}
+
 }  // namespace
 
 void GoodsacParams::Validate() const {
@@ -163,6 +169,36 @@ std::vector<Eigen::Isometry3d> CandidatePoses(std::vector<Correspondence> corres
         if (static_cast<int>(poses.size()) >= params.max_trials) return poses;
       }
     }
+  }
+  return poses;
+}
+
+std::vector<Eigen::Isometry3d> RandomCandidatePoses(
+    std::vector<Correspondence> correspondences, const std::vector<Feature>& scene_features,
+    const std::vector<const Feature*>& model_features, const GoodsacParams& params,
+    std::uint32_t seed) {
+  params.Validate();
+  const std::vector<Pair> pairs =
+      BestPairs(std::move(correspondences), scene_features, model_features, params);
+  const int count = static_cast<int>(pairs.size());
+  // Any two that can be of a triple, then any third: each triple can come from three of these.
+  std::vector<std::array<int, 2>> compatible;
+  for (int j = 0; j < count; ++j)
+    for (int i = 0; i < j; ++i)
+      if (Compatible(pairs[i], pairs[j], params)) compatible.push_back({i, j});
+  std::vector<Eigen::Isometry3d> poses;
+  if (compatible.empty()) return poses;
+  std::mt19937 random(seed);
+  for (int draw = 0; draw < params.max_triples; ++draw) {
+    const auto& [i, j] = compatible[Below(compatible.size(), &random)];
+    const int k = static_cast<int>(Below(pairs.size(), &random));
+    if (k == i || k == j || !Compatible(pairs[i], pairs[k], params) ||
+        !Compatible(pairs[j], pairs[k], params))
+      continue;
+    const std::optional<Eigen::Isometry3d> pose = PoseOf({&pairs[i], &pairs[j], &pairs[k]}, params);
+    if (!pose) continue;
+    poses.push_back(*pose);
+    if (static_cast<int>(poses.size()) >= params.max_trials) break;
   }
   return poses;
 }

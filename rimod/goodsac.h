@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -44,5 +45,14 @@ std::vector<Eigen::Isometry3d> CandidatePoses(std::vector<Correspondence> corres
                                               const std::vector<Feature>& scene_features,
                                               const std::vector<const Feature*>& model_features,
                                               const GoodsacParams& params);
+
+// The same by RANSAC (Fischler and Bolles), to measure what the order is worth: of the same
+// correspondences' triples that pass the same early rejections each is as likely as any other in
+// each draw, with replacement. max_triples counts draws, max_poses_a_correspondence is not looked
+// at. Equal seeds give equal poses.
+std::vector<Eigen::Isometry3d> RandomCandidatePoses(
+    std::vector<Correspondence> correspondences, const std::vector<Feature>& scene_features,
+    const std::vector<const Feature*>& model_features, const GoodsacParams& params,
+    std::uint32_t seed);
 
 }  // namespace rimod

@@ -29,6 +29,7 @@ void FreeLists(ModelView* view) {
 ModelDatabase::ModelDatabase(std::vector<ObjectModel> models, const PipelineParams& params,
                              const Execution& execution)
     : method_(params.method), models_(std::move(models)) {
+  CheckDescriptor(params);
   PrepareModels(params, execution);
   if (!models_.empty()) descriptor_kind_ = models_.front().descriptor_kind;
   PlaceFeatures();

@@ -16,7 +16,8 @@ namespace rimod {
 
 // The models that are looked for, with everything that searching needs. Immutable; the order of the
 // given models does not matter. Models whose features come from other parameters get their views
-// computed anew. Throws std::invalid_argument for an invalid model or two of one name.
+// computed anew. Throws std::invalid_argument for an invalid model, two of one name or a
+// descriptor that the method cannot use.
 class ModelDatabase {
  public:
   ModelDatabase(std::vector<ObjectModel> models, const PipelineParams& params,

@@ -18,9 +18,13 @@ std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features
                                                       const PipelineParams& params,
                                                       const Execution& execution) {
   const StageScope stage(execution, "matching");
+  MatchingParams matching = params.matching;
+  if (params.descriptor == DescriptorType::kSphericalSpin) {
+    matching.min_shared_cells = 0;  // none is ever empty
+  }
   std::vector<std::vector<Correspondence>> by_model(database.models().size());
   for (const Correspondence& match :
-       MatchFeatures(features.features, database.descriptors(), params.matching, execution)) {
+       MatchFeatures(features.features, database.descriptors(), matching, execution)) {
     const int model = database.feature(match.model_feature).model;
     by_model[model].push_back(
         {match.scene_feature, match.model_feature - database.first_feature(model), match.distance});

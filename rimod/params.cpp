@@ -1,5 +1,7 @@
 #include "rimod/params.h"
 
+#include <stdexcept>
+
 #include "rimod/check.h"
 
 namespace rimod {
@@ -117,6 +119,7 @@ void PipelineParams::Validate() const {
   range_image.Validate();
   interest_points.Validate();
   range_patch.Validate();
+  spherical_spin.Validate();
   model_surface.Validate();
   model_views.Validate();
   matching.Validate();
@@ -132,6 +135,14 @@ void PipelineParams::Validate() const {
   choice.Validate();
   early.Validate();
   CheckWithin("max_reported_hypotheses", max_reported_hypotheses, 1, 500);
+  CheckDescriptor(*this);
+}
+
+void CheckDescriptor(const PipelineParams& params) {
+  if (params.method == Method::kDefault && params.descriptor != DescriptorType::kRangePatch)
+    throw std::invalid_argument(
+        "descriptor is spherical_spin, which only method paper can use: what method default has "
+        "learnt is about range_patch");
 }
 
 PipelineParams DefaultParams(Method method) {

@@ -14,6 +14,7 @@
 #include "rimod/range_patch.h"
 #include "rimod/refinement.h"
 #include "rimod/scoring.h"
+#include "rimod/spherical_spin.h"
 #include "rimod/sweep_assembler.h"
 
 namespace rimod {
@@ -46,11 +47,13 @@ struct ChoiceParams {
 // Everything that can be set, one struct a stage. io/config reads it from YAML.
 struct PipelineParams {
   Method method = Method::kDefault;
+  DescriptorType descriptor = DescriptorType::kRangePatch;  // spherical_spin: method paper only
   SweepParams sweep;
   CloudParams cloud;
   RangeImageParams range_image;
   InterestPointParams interest_points;
   RangePatchParams range_patch;
+  SphericalSpinParams spherical_spin;
   ModelSurfaceParams model_surface;
   ModelViewParams model_views;
   MatchingParams matching;
@@ -68,6 +71,9 @@ struct PipelineParams {
   int max_reported_hypotheses = 200;  // in a result and its message; 1 .. 500
   void Validate() const;              // all of the above
 };
+
+// Throws std::invalid_argument when the method cannot use the descriptor.
+void CheckDescriptor(const PipelineParams& params);
 
 // The parameters that a method starts from.
 PipelineParams DefaultParams(Method method);

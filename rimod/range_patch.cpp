@@ -7,39 +7,10 @@
 #include <vector>
 
 #include "rimod/check.h"
+#include "rimod/neighbourhood.h"
 
 namespace rimod {
 namespace {
-
-constexpr int kMaxNeighbourhoodSide =
-    31;  // pixels looked at across; wider neighbourhoods are thinned
-
-// Calls visit(point) for the measured points within radius of the pixel's own, thinned to at most
-// kMaxNeighbourhoodSide^2 pixels.
-template <typename Visitor>
-void VisitNeighbourhood(const RangeImage& image, const PixelIndex& pixel, double radius,
-                        const Visitor& visit) {
-  const Eigen::Vector3f& centre = image.point(pixel.row, pixel.column);
-  const double range = image.range(pixel.row, pixel.column);
-  const double angle = radius < range ? std::asin(radius / range) : 1.5;
-  const double elevation =
-      PixelDirection(image.grid(), pixel.row + 0.5, pixel.column + 0.5).elevation;
-  const double widening = 1.0 / std::max(std::cos(elevation), 0.2);  // meridians converge upwards
-  const int reach_rows = static_cast<int>(std::ceil(angle / image.grid().resolution));
-  const int reach_columns = static_cast<int>(std::ceil(angle * widening / image.grid().resolution));
-  const int step = 1 + 2 * std::max(reach_rows, reach_columns) / kMaxNeighbourhoodSide;
-  const float radius_sq = static_cast<float>(radius * radius);
-  for (int dr = -(reach_rows / step) * step; dr <= reach_rows; dr += step) {
-    const int row = pixel.row + dr;
-    if (row < 0 || row >= image.height()) continue;
-    for (int dc = -(reach_columns / step) * step; dc <= reach_columns; dc += step) {
-      const int column = pixel.column + dc;
-      if (column < 0 || column >= image.width() || !image.measured(row, column)) continue;
-      const Eigen::Vector3f& point = image.point(row, column);
-      if ((point - centre).squaredNorm() <= radius_sq) visit(point, step);
-    }
-  }
-}
 
 // Heights over the patch's plane, the highest point of each cell as seen from along the normal.
 struct Heights {

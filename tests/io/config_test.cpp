@@ -70,6 +70,9 @@ TEST(ConfigTest, ValuesOutOfRangeNameFileLineAndKey) {
                        {"my.yaml:2", "range_image", "resolution_deg", "radians"}));
   EXPECT_TRUE(Mentions(ErrorOf("validation_scoring:\n  epsilon: -1\n"),
                        {"my.yaml:2", "validation_scoring", "epsilon"}));
+  EXPECT_TRUE(Mentions(ErrorOf("cloud:\ndescriptor: spherical_spin\n"),
+                       {"my.yaml:2", "key 'descriptor'", "spherical_spin", "method paper"}));
+  EXPECT_EQ(ErrorOf("descriptor: spherical_spin\nmethod: paper\n"), "");
   EXPECT_TRUE(Mentions(ErrorOf("bus:\n  idle_time: 0\n"), {"my.yaml:2", "bus", "idle_time"}));
   EXPECT_TRUE(Mentions(ErrorOf("result:\n  max_reported_hypotheses: 0\n"),
                        {"my.yaml:2", "max_reported_hypotheses"}));
@@ -138,6 +141,7 @@ TEST(ConfigTest, EveryFieldOfTheParametersHasAKey) {
   EXPECT_EQ(num_keys["range_image"], CountFields<RangeImageParams>());
   EXPECT_EQ(num_keys["interest_points"], CountFields<InterestPointParams>());
   EXPECT_EQ(num_keys["range_patch"], CountFields<RangePatchParams>());
+  EXPECT_EQ(num_keys["spherical_spin"], CountFields<SphericalSpinParams>());
   EXPECT_EQ(num_keys["model_surface"], CountFields<ModelSurfaceParams>());
   EXPECT_EQ(num_keys["model_views"], CountFields<ModelViewParams>());
   EXPECT_EQ(num_keys["matching"], CountFields<MatchingParams>());
@@ -155,8 +159,8 @@ TEST(ConfigTest, EveryFieldOfTheParametersHasAKey) {
   EXPECT_EQ(num_keys["evidence"], CountFields<EvidenceParams>());
   EXPECT_EQ(num_keys["choice"], CountFields<ChoiceParams>());
   EXPECT_EQ(num_keys["bus"], CountFields<BusParams>());
-  // Each struct has a section; `result` and the top level have one field each.
-  const int num_structs = CountFields<PipelineParams>() - 2 + CountFields<Configuration>() - 1;
+  // Each struct has a section; `result` has one field, the top level two.
+  const int num_structs = CountFields<PipelineParams>() - 3 + CountFields<Configuration>() - 1;
   EXPECT_EQ(num_keys.size() - 3u, static_cast<std::size_t>(num_structs)) << "validation has two";
 }
 

@@ -146,6 +146,9 @@ TEST(ModelMatchesParamsTest, OnlyForTheParametersItWasMadeWith) {
   params = Params();
   params.model_views.azimuths = 5;
   EXPECT_FALSE(ModelMatchesParams(model, params));
+  params = Params();
+  params.descriptor = DescriptorType::kSphericalSpin;
+  EXPECT_FALSE(ModelMatchesParams(model, params));
   params = Params();  // matters for searching only
   params.matching.max_matches = 7;
   params.scoring.gamma = 0.5;

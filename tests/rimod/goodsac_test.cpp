@@ -297,5 +297,79 @@ TEST(CandidatePosesTest, TooFewOrUnusableCorrespondencesGiveNothing) {
   EXPECT_TRUE(nan.Poses(params).empty());
 }
 
+std::vector<Eigen::Isometry3d> RandomPoses(const Case& of, const GoodsacParams& params,
+                                           std::uint32_t seed) {
+  return RandomCandidatePoses(of.correspondences, of.scene, of.ModelPointers(), params, seed);
+}
+
+TEST(RandomCandidatePosesTest, ComeFromTheSeedAlone) {
+  const Case made = RandomCase(30, 11, RandomValues(12).Pose());
+  GoodsacParams params = Lenient();
+  params.max_trials = 50;
+  const auto once = RandomPoses(made, params, 1), again = RandomPoses(made, params, 1);
+  const auto other = RandomPoses(made, params, 2);
+  ASSERT_EQ(once.size(), 50u);
+  ASSERT_EQ(again.size(), 50u);
+  bool differ = false;
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_EQ(once[i].matrix(), again[i].matrix());
+    differ = differ || once[i].matrix() != other[i].matrix();
+  }
+  EXPECT_TRUE(differ);
+}
+
+// Four correspondences, of which one is false: one triple of four gives the pose. Each of the four
+// is drawn as often as the others.
+TEST(RandomCandidatePosesTest, DrawAllTriplesAlike) {
+  const Eigen::Isometry3d T = RandomValues(13).Pose();
+  Case made = MakeCase({{0, 0, 0}, {0.3, 0, 0}, {0, 0.4, 0}, {0, 0, 0.5}}, T);
+  made.scene[3].position += Eigen::Vector3f(0.2f, 0.3f, 0.1f);
+  GoodsacParams params = Lenient();
+  params.max_trials = 4000;
+  int correct = 0;
+  for (const Eigen::Isometry3d& pose : RandomPoses(made, params, 3))
+    correct += (pose.translation() - T.translation()).norm() < 1e-3;
+  EXPECT_NEAR(correct, 1000, 120);  // four standard deviations
+}
+
+// Both try the same triples: with draws enough each pose of one is among the other's.
+TEST(RandomCandidatePosesTest, AreThoseOfTheOrderedSearch) {
+  const Case made = RandomCase(8, 14, RandomValues(15).Pose());
+  GoodsacParams params = Lenient();
+  params.min_separation = 0.3;
+  params.min_triangle_height = 0.1;
+  params.max_trials = 3000;
+  const std::vector<Eigen::Isometry3d> ordered = made.Poses(params);
+  ASSERT_GT(ordered.size(), 5u);
+  ASSERT_LT(ordered.size(), 56u);
+  const std::vector<Eigen::Isometry3d> random = RandomPoses(made, params, 4);
+  const auto has = [](const std::vector<Eigen::Isometry3d>& poses, const Eigen::Isometry3d& pose) {
+    return std::any_of(poses.begin(), poses.end(), [&](const Eigen::Isometry3d& other) {
+      return other.matrix().isApprox(pose.matrix(), 1e-9);
+    });
+  };
+  for (const Eigen::Isometry3d& pose : ordered) EXPECT_TRUE(has(random, pose));
+  for (const Eigen::Isometry3d& pose : random) EXPECT_TRUE(has(ordered, pose));
+}
+
+TEST(RandomCandidatePosesTest, KeepToTheBudget) {
+  const Case made = RandomCase(30, 16, Eigen::Isometry3d::Identity());
+  GoodsacParams params = Lenient();
+  params.max_triples = 7;
+  EXPECT_LE(RandomPoses(made, params, 5).size(), 7u);
+  params.max_triples = 1000000;
+  params.max_trials = 9;
+  EXPECT_EQ(RandomPoses(made, params, 5).size(), 9u);
+}
+
+TEST(RandomCandidatePosesTest, NoneOfFewerThanThree) {
+  for (const int count : {0, 1, 2}) {
+    GoodsacParams params = Lenient();
+    params.max_triples = 1000;
+    EXPECT_TRUE(
+        RandomPoses(RandomCase(count, 17, Eigen::Isometry3d::Identity()), params, 6).empty());
+  }
+}
+
 }  // namespace
 }  // namespace rimod

@@ -93,6 +93,24 @@ TEST(FindByTriplesTest, FindsAnObjectWhereItStands) {
   EXPECT_GT(found.validated[0].score, 0.6);
 }
 
+// Triples need the features' positions alone: what describes them may be exchanged.
+TEST(FindByTriplesTest, FindsItBySphericalSpinImages) {
+  for (const int dimensions : {0, 20}) {
+    PipelineParams params = Params();
+    params.descriptor = DescriptorType::kSphericalSpin;
+    params.spherical_spin.resolution = 8;
+    params.spherical_spin.support_size = 0.5;
+    params.spherical_spin.dimensions = dimensions;
+    const ModelDatabase database({SculptureDatabase().models()[0]}, params, Execution{});
+    EXPECT_NE(database.descriptor_kind(), SculptureDatabase().descriptor_kind());
+    const StagedCandidates found =
+        FindByTriples(SculptureImage(), ExtractFeatures(SculptureImage(), params, Execution{}),
+                      database, params, Execution{});
+    ASSERT_FALSE(found.validated.empty()) << dimensions;
+    EXPECT_TRUE(PosesNear(found.validated[0].T_sensor_object, kPose, 0.1, 0.2)) << dimensions;
+  }
+}
+
 TEST(FindByTriplesTest, RefinementComesNearerToThePose) {
   PipelineParams params = Params();
   params.pose_refinement.iterations = 10;

@@ -127,6 +127,9 @@ const std::vector<RealField>& RealFields() {
       REAL(choice, other_class_distance, -0.1, 10.1),
       REAL(cloud, mount_x, -1001.0, 1001.0),
       REAL(cloud, mount_y, -1001.0, 1001.0),
+      REAL(spherical_spin, support_size, 0.01, 2.1),
+      REAL(spherical_spin, normal_radius, 0.0, 2.1),
+      REAL(spherical_spin, normal_pixels, -0.1, 100.1),
       REAL(cloud, mount_z, -1001.0, 1001.0),
       REAL(cloud, mount_roll, -6.3, 6.3),
       REAL(cloud, mount_pitch, -6.3, 6.3),
@@ -149,6 +152,9 @@ const std::vector<CountField>& CountFields() {
       COUNT(interest_points, harris_window, 1, 16),
       COUNT(range_patch, resolution, 1, 17),
       COUNT(range_patch, min_points, 2),
+      COUNT(spherical_spin, resolution, 1, 17),
+      COUNT(spherical_spin, dimensions, -1, 256),
+      COUNT(spherical_spin, min_points, 2),
       COUNT(model_surface, min_neighbours, 2, 1001),
       COUNT(model_views, azimuths, 0, 361),
       COUNT(model_views, elevations, 0, 31),
@@ -227,6 +233,12 @@ TEST(PipelineParamsTest, ChecksWhatLiesOutsideTheStages) {
   params = PipelineParams();
   params.validation.scoring.epsilon = -1.0;
   EXPECT_TRUE(Complains([&] { params.Validate(); }, {"epsilon"}));
+  params = PipelineParams();
+  params.descriptor = DescriptorType::kSphericalSpin;
+  params.method = Method::kPaper;
+  EXPECT_NO_THROW(params.Validate());
+  params.method = Method::kDefault;
+  EXPECT_TRUE(Complains([&] { params.Validate(); }, {"descriptor", "spherical_spin", "paper"}));
   params = PipelineParams();
   params.sweep.line_duration = 0.0;
   EXPECT_TRUE(Complains([&] { params.Validate(); }, {"line_duration"}));
