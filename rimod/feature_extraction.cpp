@@ -68,6 +68,11 @@ FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params
     const StageScope stage(execution, "interest_points");
     interest_points = FindInterestPoints(image, params.interest_points);
   }
+  return DescribeFeatures(image, interest_points, params, execution);
+}
+
+FeatureSet DescribeFeatures(const RangeImage& image, const std::vector<PixelIndex>& interest_points,
+                            const PipelineParams& params, const Execution& execution) {
   const StageScope stage(execution, "descriptors");
   std::vector<std::optional<Feature>> described(interest_points.size());
   if (params.descriptor == DescriptorType::kSphericalSpin) {

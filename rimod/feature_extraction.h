@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "rimod/execution.h"
 #include "rimod/features.h"
+#include "rimod/interest_points.h"
 #include "rimod/object_model.h"
 #include "rimod/params.h"
 #include "rimod/range_image.h"
@@ -18,6 +20,10 @@ int DescriptorSize(const PipelineParams& params);
 // III-A). Stages interest_points and descriptors. Points without a normal are left out.
 FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params,
                            const Execution& execution);
+
+// The second step of it: of these interest points. Stage descriptors.
+FeatureSet DescribeFeatures(const RangeImage& image, const std::vector<PixelIndex>& interest_points,
+                            const PipelineParams& params, const Execution& execution);
 
 // Features and validation points of a model whose surface (name, box, points, normals,
 // point_spacing) is given: renders its virtual views and extracts them (sections III-A, III-C).

@@ -13,28 +13,11 @@ namespace {
 
 using CandidateList = std::vector<Candidate>;
 
-std::vector<std::vector<Correspondence>> MatchByModel(const FeatureSet& features,
-                                                      const ModelDatabase& database,
-                                                      const PipelineParams& params,
-                                                      const Execution& execution) {
-  const StageScope stage(execution, "matching");
-  MatchingParams matching = params.matching;
-  if (params.descriptor == DescriptorType::kSphericalSpin) {
-    matching.min_shared_cells = 0;  // none is ever empty
-  }
-  std::vector<std::vector<Correspondence>> by_model(database.models().size());
-  for (const Correspondence& match :
-       MatchFeatures(features.features, database.descriptors(), matching, execution)) {
-    const int model = database.feature(match.model_feature).model;
-    by_model[model].push_back(
-        {match.scene_feature, match.model_feature - database.first_feature(model), match.distance});
-  }
-  return by_model;
-}
-
-std::vector<std::vector<Eigen::Isometry3d>> GeneratePoses(
-    const std::vector<std::vector<Correspondence>>& correspondences, const FeatureSet& features,
-    const ModelDatabase& database, const PipelineParams& params, const Execution& execution) {
+std::vector<std::vector<Eigen::Isometry3d>> GeneratePoses(const ModelMatches& correspondences,
+                                                          const FeatureSet& features,
+                                                          const ModelDatabase& database,
+                                                          const PipelineParams& params,
+                                                          const Execution& execution) {
   const StageScope stage(execution, "hypotheses");
   std::vector<std::vector<Eigen::Isometry3d>> poses(correspondences.size());
   execution.parallel_for(poses.size(), [&](std::size_t m) {
@@ -109,22 +92,45 @@ CandidateList WithoutCollisions(const CandidateList& candidates, const ModelData
 
 }  // namespace
 
+ModelMatches MatchByModel(const FeatureSet& features, const ModelDatabase& database,
+                          const PipelineParams& params, const Execution& execution) {
+  const StageScope stage(execution, "matching");
+  MatchingParams matching = params.matching;
+  if (params.descriptor == DescriptorType::kSphericalSpin) {
+    matching.min_shared_cells = 0;  // none is ever empty
+  }
+  ModelMatches by_model(database.models().size());
+  for (const Correspondence& match :
+       MatchFeatures(features.features, database.descriptors(), matching, execution)) {
+    const int model = database.feature(match.model_feature).model;
+    by_model[model].push_back(
+        {match.scene_feature, match.model_feature - database.first_feature(model), match.distance});
+  }
+  return by_model;
+}
+
+StagedCandidates ProposeByTriples(const RangeImage& image, const FeatureSet& features,
+                                  const ModelDatabase& database, const PipelineParams& params,
+                                  const Execution& execution) {
+  const ModelMatches correspondences = MatchByModel(features, database, params, execution);
+  const auto poses = GeneratePoses(correspondences, features, database, params, execution);
+  StagedCandidates found;
+  found.scored = ScorePoses(image, poses, database, params, execution);
+  found.num_found = static_cast<int>(found.scored.size());
+  const StageScope stage(execution, "pruning");
+  std::sort(found.scored.begin(), found.scored.end(), BetterCandidate);
+  found.pruned = PruneToLocalBest(found.scored, database.models(), params.pruning);
+  return found;
+}
+
 StagedCandidates FindByTriples(const RangeImage& image, const FeatureSet& features,
                                const ModelDatabase& database, const PipelineParams& params,
                                const Execution& execution) {
-  const auto correspondences = MatchByModel(features, database, params, execution);
-  const auto poses = GeneratePoses(correspondences, features, database, params, execution);
-  CandidateList scored = ScorePoses(image, poses, database, params, execution);
-  const int num_found = static_cast<int>(scored.size());
-  CandidateList pruned;
-  {
-    const StageScope stage(execution, "pruning");
-    std::sort(scored.begin(), scored.end(), BetterCandidate);
-    pruned = PruneToLocalBest(scored, database.models(), params.pruning);
-  }
+  StagedCandidates found = ProposeByTriples(image, features, database, params, execution);
+  CandidateList& pruned = found.pruned;
   if (params.pose_refinement.iterations > 0)
     pruned = RefineCandidates(image, pruned, database, params, execution);
-  CandidateList collision_free, validated;
+  CandidateList &collision_free = found.collision_free, &validated = found.validated;
   if (params.validation.before_collisions) {
     validated = ValidateCandidates(image, pruned, database, params, execution);
     validated = collision_free = WithoutCollisions(validated, database, params, execution);
@@ -132,9 +138,7 @@ StagedCandidates FindByTriples(const RangeImage& image, const FeatureSet& featur
     collision_free = WithoutCollisions(pruned, database, params, execution);
     validated = ValidateCandidates(image, collision_free, database, params, execution);
   }
-
-  return {num_found, std::move(scored), std::move(pruned), std::move(collision_free),
-          std::move(validated)};
+  return found;
 }
 
 }  // namespace rimod
