@@ -71,22 +71,28 @@ class Grid {
         scans_(std::move(scans)),
         times_(std::move(times)) {}
 
-  // Writes a CSV row for each largest descriptor distance.
-  void Evaluate(const Setting& setting, const std::vector<double>& max_distances) const {
+  // Writes a CSV row for each largest descriptor distance, which is a choice among the matches of
+  // the largest of all.
+  void Evaluate(const Setting& setting, std::vector<double> max_distances) const {
     PipelineParams params = WithSetting(setting);
+    std::sort(max_distances.begin(), max_distances.end());
+    params.matching.max_descriptor_distance = max_distances.back();
     const ModelDatabase database(models_, params, Execution{});
     Times times = times_;
     std::vector<FeatureSet> features;
+    std::vector<ModelMatches> matches;
     double num_features = 0.0;
     for (const PreparedScan& scan : scans_) {
-      features.push_back(
-          DescribeFeatures(scan.image, scan.interest_points, params, TimedExecution(&times)));
+      const Execution execution = TimedExecution(&times);
+      features.push_back(DescribeFeatures(scan.image, scan.interest_points, params, execution));
+      matches.push_back(MatchByModel(features.back(), database, params, execution));
       num_features += static_cast<double>(features.back().features.size());
     }
     for (const double max_distance : max_distances) {
-      params.matching.max_descriptor_distance = max_distance;
       Times all_times = times;
-      const HitCount hits = CountFound(features, database, params, &all_times);
+      const HitCount hits =
+          CountFound(features, MatchesWithin(max_distance, matches, features, params), database,
+                     params, &all_times);
       WriteRow(setting, max_distance, hits.total, num_features, all_times);
     }
   }
@@ -110,14 +116,35 @@ class Grid {
     return params;
   }
 
-  HitCount CountFound(const std::vector<FeatureSet>& features, const ModelDatabase& database,
+  // Matches tell their distances relative to the roughness of the scene's patch.
+  static std::vector<ModelMatches> MatchesWithin(double max_distance,
+                                                 std::vector<ModelMatches> of_scans,
+                                                 const std::vector<FeatureSet>& features,
+                                                 const PipelineParams& params) {
+    const double min_roughness = params.matching.min_roughness;
+    for (std::size_t i = 0; i < of_scans.size(); ++i) {
+      const auto too_far = [&](const Correspondence& match) {
+        const Feature& feature = features[i].features[match.scene_feature];
+        const double scale =
+            min_roughness > 0.0 ? std::max(Roughness(feature.descriptor), min_roughness) : 1.0;
+        return match.distance * scale > max_distance;
+      };
+      for (std::vector<Correspondence>& matches : of_scans[i])
+        matches.erase(std::remove_if(matches.begin(), matches.end(), too_far), matches.end());
+    }
+    return of_scans;
+  }
+
+  HitCount CountFound(const std::vector<FeatureSet>& features,
+                      const std::vector<ModelMatches>& matches, const ModelDatabase& database,
                       const PipelineParams& params, Times* times) const {
     std::vector<CountedScan> counted;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       const RangeImage& image = scans_[i].image;
       counted.push_back({scans_[i].objects, {}});
       for (const Candidate& candidate :
-           ProposeByTriples(image, features[i], database, params, TimedExecution(times)).pruned) {
+           ProposeByTriples(image, features[i], matches[i], database, params, TimedExecution(times))
+               .pruned) {
         Detection detection;
         detection.class_name = database.models()[candidate.model].name;
         detection.T_local_object = image.T_local_sensor() * candidate.T_sensor_object;

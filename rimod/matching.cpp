@@ -17,9 +17,6 @@ void MatchingParams::Validate() const {
   CheckWithin("matching min_roughness", min_roughness, 0.0, 10.0);
 }
 
-namespace {
-
-// Standard deviation of a patch's heights, m.
 double Roughness(const Descriptor& descriptor) {
   double sum = 0.0, sum_sq = 0.0;
   int count = 0;
@@ -33,8 +30,6 @@ double Roughness(const Descriptor& descriptor) {
   const double mean = sum / count;
   return kDescriptorUnit * std::sqrt(std::max(sum_sq / count - mean * mean, 0.0));
 }
-
-}  // namespace
 
 std::vector<Correspondence> MatchFeatures(const std::vector<Feature>& scene,
                                           const DescriptorIndex& index,

@@ -38,6 +38,9 @@ struct MatchingParams {
   void Validate() const;
 };
 
+// Standard deviation of a descriptor's values over the cells that are not empty, m; 0 without any.
+double Roughness(const Descriptor& descriptor);
+
 // The correspondences of each scene feature, scene features in order, each with its nearest first.
 std::vector<Correspondence> MatchFeatures(const std::vector<Feature>& scene,
                                           const DescriptorIndex& index,

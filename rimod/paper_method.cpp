@@ -110,10 +110,9 @@ ModelMatches MatchByModel(const FeatureSet& features, const ModelDatabase& datab
 }
 
 StagedCandidates ProposeByTriples(const RangeImage& image, const FeatureSet& features,
-                                  const ModelDatabase& database, const PipelineParams& params,
-                                  const Execution& execution) {
-  const ModelMatches correspondences = MatchByModel(features, database, params, execution);
-  const auto poses = GeneratePoses(correspondences, features, database, params, execution);
+                                  const ModelMatches& matches, const ModelDatabase& database,
+                                  const PipelineParams& params, const Execution& execution) {
+  const auto poses = GeneratePoses(matches, features, database, params, execution);
   StagedCandidates found;
   found.scored = ScorePoses(image, poses, database, params, execution);
   found.num_found = static_cast<int>(found.scored.size());
@@ -126,7 +125,8 @@ StagedCandidates ProposeByTriples(const RangeImage& image, const FeatureSet& fea
 StagedCandidates FindByTriples(const RangeImage& image, const FeatureSet& features,
                                const ModelDatabase& database, const PipelineParams& params,
                                const Execution& execution) {
-  StagedCandidates found = ProposeByTriples(image, features, database, params, execution);
+  const ModelMatches matches = MatchByModel(features, database, params, execution);
+  StagedCandidates found = ProposeByTriples(image, features, matches, database, params, execution);
   CandidateList& pruned = found.pruned;
   if (params.pose_refinement.iterations > 0)
     pruned = RefineCandidates(image, pruned, database, params, execution);

@@ -15,11 +15,11 @@ namespace rimod {
 ModelMatches MatchByModel(const FeatureSet& features, const ModelDatabase& database,
                           const PipelineParams& params, const Execution& execution);
 
-// Sections III-A to III-C and the local best of III-D; nothing is rejected as false: `scored` and
+// Sections III-B and III-C and the local best of III-D; nothing is rejected as false: `scored` and
 // `pruned` alone are set.
 StagedCandidates ProposeByTriples(const RangeImage& image, const FeatureSet& features,
-                                  const ModelDatabase& database, const PipelineParams& params,
-                                  const Execution& execution);
+                                  const ModelMatches& matches, const ModelDatabase& database,
+                                  const PipelineParams& params, const Execution& execution);
 
 // The paper's method: triples of correspondences in GOODSAC's order (section III-B), scored by the
 // validation points of the nearest view (III-C), false positives rejected (III-D).
