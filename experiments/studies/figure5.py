@@ -9,7 +9,7 @@ PROGRAMS = ('rimod-descriptor-grid',)
 DESCRIPTORS = ('range_patch', 'spherical_spin')
 RESOLUTIONS = (8, 5, 12, 3)             # cells a side; the paper's best first, as with all that may be stopped
 SUPPORTS = (0.35, 0.6, 0.2, 0.8, 0.1)   # m
-D_MAX = (0.02, 0.04, 0.07, 0.12)        # m a cell, root mean square
+D_MAX = (0.03, 0.06, 0.12, 0.2)         # m a cell, root mean square
 CONFIG = {'method': 'paper', 'scoring': {'gamma': 0.3}}
 NUM_SCANS, NUM_QUICK_SCANS = 30, 6
 
