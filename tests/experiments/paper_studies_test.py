@@ -58,7 +58,7 @@ class Figure5Test(unittest.TestCase):
 
 
 class GoodsacTest(unittest.TestCase):
-    ROWS = [{'order': order, 'first': first, 'tried': 100.0} for order, firsts in
+    ROWS = [{'rejections': 'all', 'order': order, 'first': first, 'tried': 100.0} for order, firsts in
             {'goodsac': (1, 2, 3, 0), 'goodsac_limited': (1, 1, 1, 1), 'ransac': (50, 0, 0, 0)}.items() for first in firsts]
 
     def test_shares_count_those_found_within_so_many(self):
@@ -67,7 +67,7 @@ class GoodsacTest(unittest.TestCase):
     def test_no_median_where_half_are_never_found(self):
         self.assertEqual(goodsac.report_median(self.ROWS, 'goodsac'), 3)
         self.assertIsNone(goodsac.report_median(self.ROWS, 'ransac'))
-        self.assertIn('RANSAC has a correct hypothesis for half of the objects never', goodsac.report(Recorder(), self.ROWS))
+        self.assertIn('with RANSAC never (25 % within the budget)', goodsac.report(Recorder(), self.ROWS))
 
 
 class RunTimesTest(unittest.TestCase):
