@@ -27,7 +27,7 @@ def measure(context, name, number):
     return [{'rejections': name, **{key: value if key in texts else float(value) for key, value in row.items()}} for row in rows]
 
 
-REJECTIONS = {'distances': 'distances alone', 'all': 'also heights, normals, tilt'}
+REJECTIONS = {'distances': 'distances alone', 'all': 'distances, heights, normals, tilt'}
 ORDERS = {'goodsac': 'GOODSAC', 'goodsac_limited': 'GOODSAC, 5 poses a worst member', 'ransac': 'RANSAC'}
 LOOKS = {'goodsac': {'color': style.COLOURS['blue'], 'linestyle': '-'},
          'goodsac_limited': {'color': style.COLOURS['green'], 'linestyle': '-.'},
