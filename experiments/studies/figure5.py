@@ -22,7 +22,7 @@ def grid(context, resolutions, supports):
     """Units of a grid, each a setting of a descriptor; those that stand first in both lists come first."""
     settings = sorted((i + j, n, s) for i, n in enumerate(resolutions) for j, s in enumerate(supports))
     number = NUM_QUICK_SCANS if context.quick else NUM_SCANS
-    return [Unit(f'{d}_{n}x{n}_{100 * s:g}cm', lambda d=d, n=n, s=s: measure(context, number, d, n, s), {'scans': number})
+    return [Unit(f'{d}_{n}x{n}_{100 * s:g}cm_{number}_scans', lambda d=d, n=n, s=s: measure(context, number, d, n, s))
             for _, n, s in settings for d in DESCRIPTORS]
 
 

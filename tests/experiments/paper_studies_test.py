@@ -53,7 +53,7 @@ class Figure5Test(unittest.TestCase):
         class Context:
             quick = False
         keys = [unit.key for unit in figure5.units(Context)]
-        self.assertEqual(keys[:2], ['range_patch_8x8_35cm', 'spherical_spin_8x8_35cm'])
+        self.assertEqual(keys[:2], ['range_patch_8x8_35cm_30_scans', 'spherical_spin_8x8_35cm_30_scans'])
         self.assertEqual(len(set(keys)), 2 * len(figure5.RESOLUTIONS) * len(figure5.SUPPORTS))
 
 
