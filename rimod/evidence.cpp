@@ -150,13 +150,13 @@ class Comparison {
       if (Rendered(r, c)) continue;
       const int pixel = ScenePixel(r, c);
       if (pixel < 0 || scene_.range(pixel) == 0.0f) continue;
-      if (!std::isinf(scene_.range(pixel))) {
+      const float behind = scene_.range(pixel) - range;
+      if (behind <= params_.continue_tolerance) {
         const float height = (T_object_sensor_ * scene_.point(pixel)).z() -
                              static_cast<float>(model_.model().box_min.z());
         if (height < params_.support_height) continue;  // what the object stands on
       }
       ++counts_.silhouette;
-      const float behind = scene_.range(pixel) - range;
       if (behind > params_.continue_tolerance) {
         ++counts_.jump;
         ++counts_.side_jump[i];

@@ -187,7 +187,7 @@ TEST_F(ShardsTest, OneWithOtherParametersIsLeftOutAndReported) {
   StartFuser();
   StartShard("good", {"--only", "pile"});
   StartShard("other", {"--only", "heap", "--config",
-                       folder_.Write("other.yaml", "choice:\n  min_probability: 0.4\n")});
+                       folder_.Write("other.yaml", "choice:\n  min_probability: 0.3\n")});
   WaitForShards(1);
   ExpectResultOf({"pile"});
   ExpectLastError({"heap", "other parameters"});
