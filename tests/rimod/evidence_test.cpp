@@ -37,9 +37,10 @@ const JudgedModel& JudgedCrate() {
 }
 
 // A floor and a wall, a crate at the pose or none, and what else is given.
-Scene Room(bool with_crate, bool with_floor = true, const std::vector<BoxShape>& others = {}) {
+Scene Room(bool with_crate, bool with_floor = true, const std::vector<BoxShape>& others = {},
+           double wall = 4.0) {
   World world;
-  world.planes = {{Eigen::Vector3d(4, 0, 0), -Eigen::Vector3d::UnitX()}};
+  world.planes = {{Eigen::Vector3d(wall, 0, 0), -Eigen::Vector3d::UnitX()}};
   if (with_floor) world.planes.push_back({Eigen::Vector3d(0, 0, -0.8), Eigen::Vector3d::UnitZ()});
   world.boxes = others;
   if (with_crate) {
@@ -149,6 +150,14 @@ TEST(EvidenceTest, NoticesTheSurfaceThatGoesOn) {
   EXPECT_LT(in_wall.values[kRelief], 0.05);  // flat
   const Evidence crate = GatherEvidence(Room(true), JudgedCrate(), kPose, Params());
   EXPECT_GT(crate.values[kRelief], in_wall.values[kRelief]);
+}
+
+TEST(EvidenceTest, EndsWhereOnlyTheFloorIsSeenFarBehind) {
+  // No wall near: past the crate's rim there is nothing but the floor that it stands on.
+  const auto v = GatherEvidence(Room(true, true, {}, 30.0), JudgedCrate(), kPose, Params()).values;
+  EXPECT_GT(v[kSilhouetteJump], 0.9);
+  EXPECT_GT(v[kSilhouetteKnown], 0.9);
+  EXPECT_LT(v[kSilhouetteContinues], 0.1);
 }
 
 TEST(EvidenceTest, NoticesWhatStandsInTheObjectsPlace) {
