@@ -37,7 +37,7 @@ struct RankingParams {
   // How much work goes into a model: with more than full_models of them it grows slower than their
   // number, so that each gets less of the matches of a feature and of the quotas.
   int num_models = 0;     // models that share it; 0 = those of the database
-  int full_models = 8;    // >= 1
+  int full_models = 7;    // >= 1
   int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1
   ModelQuota refined{120, 240, 0.002};
   ModelQuota judged{8, 40, 0.01};
