@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "io/config.h"
+#include "io/label_file.h"
 #include "io/model_file.h"
 #include "io/scan_source.h"
 #include "rimod/detector.h"
+#include "rimod/hit_counting.h"
 #include "rimod/interest_points.h"
 #include "rimod/paper_method.h"
-#include "viewer_tools/hit_counting.h"
-#include "viewer_tools/label_file.h"
 
 namespace rimod {
 namespace {

@@ -54,7 +54,8 @@ std::string DetectorTrials::KeyOf(const Setting& setting,
 }
 
 DetectorTrials::Description* DetectorTrials::DescriptionFor(const Setting& setting) {
-  const std::string key = KeyOf(setting, {"range_image", "interest_points", "range_patch"});
+  const std::string key =
+      KeyOf(setting, {"range_image", "interest_points", "range_patch", "spherical_spin"});
   const auto known = std::find_if(descriptions_.begin(), descriptions_.end(),
                                   [&](const Description& entry) { return entry.key == key; });
   if (known != descriptions_.end()) {

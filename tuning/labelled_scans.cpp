@@ -4,8 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "io/label_file.h"
 #include "io/stoppable.h"
-#include "viewer_tools/label_file.h"
 
 namespace rimod {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/scan_source.h"
-#include "viewer_tools/hit_counting.h"
+#include "rimod/hit_counting.h"
 
 namespace rimod {
 

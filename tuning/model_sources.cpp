@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "io/label_file.h"
 #include "io/model_file.h"
 #include "io/recording.h"
 #include "rimod/feature_extraction.h"
 #include "rimod/model_building.h"
-#include "viewer_tools/label_file.h"
 
 namespace rimod {
 namespace {

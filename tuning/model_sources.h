@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "rimod/execution.h"
+#include "rimod/hit_counting.h"
 #include "rimod/object_model.h"
 #include "rimod/params.h"
 #include "rimod/recording.h"
-#include "viewer_tools/hit_counting.h"
 
 namespace rimod {
 

@@ -5,7 +5,7 @@
 
 namespace rimod {
 
-// What was found in scans, summed up (viewer_tools/hit_counting.h has the rules).
+// What was found in scans, summed up (rimod/hit_counting.h has the rules).
 struct ScanCounts {
   int scans = 0;
   int right = 0;         // objects found

@@ -42,7 +42,7 @@ struct Dimensions {
 
 Dimensions DimensionsFrom(const TuneOptions& options, const Configuration& configuration) {
   const std::vector<std::string> texts =
-      options.vary.empty() ? DefaultVaryTexts(configuration.pipeline.method) : options.vary;
+      options.vary.empty() ? DefaultVaryTexts(configuration.pipeline) : options.vary;
   Dimensions result;
   std::set<std::string> names;
   for (const std::string& text : texts) {

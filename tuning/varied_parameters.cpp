@@ -14,22 +14,26 @@ namespace {
 
 std::string NameOf(const ConfigKey& key) { return key.section + "." + key.key; }
 
-const std::set<std::string>& SectionsOf(Method method) {
-  static const std::set<std::string> paper = {
-      "range_image", "interest_points", "range_patch",       "model_surface", "model_views",
-      "matching",    "goodsac",         "scoring",           "pruning",       "pose_refinement",
-      "collisions",  "validation",      "validation_scoring"};
-  static const std::set<std::string> own = {
-      "range_image", "interest_points", "range_patch", "model_surface", "model_views",
-      "matching",    "ranking",         "refinement",  "evidence",      "choice"};
-  return method == Method::kPaper ? paper : own;
+std::string DescriptorSection(const PipelineParams& params) {
+  return params.descriptor == DescriptorType::kSphericalSpin ? "spherical_spin" : "range_patch";
+}
+
+std::set<std::string> SectionsOf(const PipelineParams& params) {
+  if (params.method == Method::kDefault)
+    return {"range_image", "interest_points", "range_patch", "model_surface", "model_views",
+            "matching",    "ranking",         "refinement",  "evidence",      "choice"};
+  return {"range_image",       "interest_points", DescriptorSection(params),
+          "model_surface",     "model_views",     "matching",
+          "goodsac",           "scoring",         "pruning",
+          "pose_refinement",   "collisions",      "validation",
+          "validation_scoring"};
 }
 
 ParameterCost CostOf(const std::string& name) {
   const std::string section = name.substr(0, name.find('.'));
   if (section == "model_surface") return ParameterCost::kSurface;
-  if (section == "interest_points" || section == "range_patch" || section == "model_views" ||
-      name == "range_image.resolution_deg")
+  if (section == "interest_points" || section == "range_patch" || section == "spherical_spin" ||
+      section == "model_views" || name == "range_image.resolution_deg")
     return ParameterCost::kViews;
   return ParameterCost::kSearch;
 }
@@ -119,8 +123,10 @@ std::string NotTunable(const std::string& name, const Configuration& configurati
   Configuration copy = configuration;
   for (const ConfigKey& key : ConfigTable(&copy)) {
     if (NameOf(key) != name || key.section.empty()) continue;
-    const bool own = configuration.pipeline.method == Method::kDefault;
-    return name + (own ? ": the default method" : ": the paper's method") +
+    const PipelineParams& params = configuration.pipeline;
+    const std::string method =
+        params.method == Method::kDefault ? "the default method" : "the paper's method";
+    return name + ": " + method + " with " + DescriptorSection(params) +
            " does not use it in single scans";
   }
   return "'" + name.substr(0, 80) + "' is no parameter; --list shows all";
@@ -131,8 +137,9 @@ std::string NotTunable(const std::string& name, const Configuration& configurati
 std::vector<TunableParameter> TunableParameters(const Configuration& configuration) {
   Configuration copy = configuration;
   std::vector<TunableParameter> parameters;
+  const std::set<std::string> sections = SectionsOf(copy.pipeline);
   for (const ConfigKey& key : ConfigTable(&copy)) {
-    if (SectionsOf(copy.pipeline.method).count(key.section) == 0) continue;
+    if (sections.count(key.section) == 0) continue;
     const std::string name = NameOf(key);
     parameters.push_back({name, ConfigValueText(key), key.comment, CostOf(name)});
   }
@@ -156,8 +163,12 @@ std::string TunableParametersText(const Configuration& configuration) {
   return text;
 }
 
-std::vector<std::string> DefaultVaryTexts(Method method) {
-  if (method == Method::kPaper)
+std::vector<std::string> DefaultVaryTexts(const PipelineParams& params) {
+  if (params.descriptor == DescriptorType::kSphericalSpin)
+    return {"spherical_spin.support_size", "matching.max_descriptor_distance",
+            "goodsac.distance_tolerance=0.025..0.1", "validation_scoring.epsilon=0.03..0.12",
+            "validation.min_score=0.05..0.5"};
+  if (params.method == Method::kPaper)
     return {"range_patch.support_size=0.2..0.6", "matching.max_descriptor_distance=0.025..0.1",
             "goodsac.distance_tolerance=0.025..0.1", "validation_scoring.epsilon=0.03..0.12",
             "validation.min_score=0.05..0.5"};
@@ -171,9 +182,9 @@ DimensionResult DimensionFrom(const std::string& text, const Configuration& conf
   if (!vary)
     return {std::nullopt, "'" + text.substr(0, 80) + "' is not KEY, KEY=LOW..HIGH or KEY=A,B"};
   Configuration copy = configuration;
+  const std::set<std::string> sections = SectionsOf(copy.pipeline);
   for (const ConfigKey& key : ConfigTable(&copy)) {
-    if (NameOf(key) != vary->name || SectionsOf(copy.pipeline.method).count(key.section) == 0)
-      continue;
+    if (NameOf(key) != vary->name || sections.count(key.section) == 0) continue;
     Dimension dimension;
     dimension.name = vary->name;
     const bool list = !vary->values.empty() || !IsNumber(key);

@@ -24,12 +24,13 @@ struct TunableParameter {
   ParameterCost cost = ParameterCost::kSearch;
 };
 
-// Those that the configuration's method uses in single scans, in the order of the pipeline.
+// Those that the configuration's method and descriptor use in single scans, in the order of the
+// pipeline.
 std::vector<TunableParameter> TunableParameters(const Configuration& configuration);
 std::string TunableParametersText(const Configuration& configuration);
 
 // What is varied when the user names nothing; docs/tuning.md has the reasons.
-std::vector<std::string> DefaultVaryTexts(Method method);
+std::vector<std::string> DefaultVaryTexts(const PipelineParams& params);
 
 struct DimensionResult {
   std::optional<Dimension> dimension;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "rimod/hit_counting.h"
 #include "viewer_tools/detector_trace.h"
-#include "viewer_tools/hit_counting.h"
 
 namespace rimod {
 

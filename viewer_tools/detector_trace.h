@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "rimod/default_method.h"
+#include "rimod/hit_counting.h"
 #include "rimod/model_database.h"
 #include "rimod/params.h"
-#include "viewer_tools/hit_counting.h"
 
 namespace rimod {
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "io/files.h"
+#include "io/label_file.h"
 #include "io/model_file.h"
 #include "io/thread_pool.h"
 #include "io/version.h"
@@ -15,7 +16,6 @@
 #include "viewer_tools/case_folder.h"
 #include "viewer_tools/detection_lines.h"
 #include "viewer_tools/html.h"
-#include "viewer_tools/label_file.h"
 #include "viewer_tools/png.h"
 #include "viewer_tools/report_cases.h"
 #include "viewer_tools/report_page.h"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "io/channels.h"
+#include "rimod/hit_counting.h"
 #include "rimod/params.h"
-#include "viewer_tools/hit_counting.h"
 
 namespace rimod {
 

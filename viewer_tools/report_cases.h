@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "rimod/hit_counting.h"
 #include "rimod/model_database.h"
 #include "rimod/params.h"
 #include "viewer_tools/case_picture.h"
-#include "viewer_tools/hit_counting.h"
 #include "viewer_tools/report_page.h"
 
 namespace rimod {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "viewer_tools/hit_counting.h"
+#include "rimod/hit_counting.h"
 
 namespace rimod {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "rimod/hit_counting.h"
 #include "rimod/object_model.h"
 #include "rimod/range_image.h"
-#include "viewer_tools/hit_counting.h"
 
 namespace rimod {
 

@@ -1,8 +1,8 @@
 // What people and other programs write for rimod-report and rimod-snapshot: labels, detections.
 
+#include "io/label_file.h"
 #include "tests/fuzz/input_file.h"
 #include "viewer_tools/detection_lines.h"
-#include "viewer_tools/label_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const rimod::InputFile file("lines");

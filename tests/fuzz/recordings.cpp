@@ -1,8 +1,8 @@
 // The model.json of a recording.
 
+#include "io/label_file.h"
 #include "io/recording.h"
 #include "tests/fuzz/input_file.h"
-#include "viewer_tools/label_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const rimod::InputFile file("model.json");

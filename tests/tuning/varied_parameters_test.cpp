@@ -9,12 +9,18 @@ namespace {
 
 Configuration Default() { return DefaultConfiguration(Method::kDefault); }
 
+Configuration SpinImages() {
+  Configuration configuration = DefaultConfiguration(Method::kPaper);
+  configuration.pipeline.descriptor = DescriptorType::kSphericalSpin;
+  return configuration;
+}
+
 std::string ErrorOf(const std::string& text) { return DimensionFrom(text, Default()).error; }
 
 TEST(VariedParametersTest, TheShortListsAreRangesAroundTheDefaults) {
-  for (const Method method : {Method::kDefault, Method::kPaper}) {
-    const Configuration configuration = DefaultConfiguration(method);
-    for (const std::string& text : DefaultVaryTexts(method)) {
+  for (const Configuration& configuration :
+       {Default(), DefaultConfiguration(Method::kPaper), SpinImages()}) {
+    for (const std::string& text : DefaultVaryTexts(configuration.pipeline)) {
       const DimensionResult made = DimensionFrom(text, configuration);
       ASSERT_TRUE(made.dimension) << made.error;
       const double value = std::stod(SettingOf({*made.dimension}, configuration)[0]);
@@ -29,6 +35,19 @@ TEST(VariedParametersTest, EveryParameterOfTheListMayBeVaried) {
     const std::string error = ErrorOf(parameter.name);
     EXPECT_TRUE(error.empty() || error.find("needs a range") != std::string::npos) << error;
   }
+}
+
+TEST(VariedParametersTest, OnlyTheDescriptorInUseMayBeVaried) {
+  const Configuration patches = DefaultConfiguration(Method::kPaper);
+  const std::string patch = "range_patch.support_size", spin = "spherical_spin.support_size";
+  EXPECT_TRUE(DimensionFrom(patch, patches).dimension);
+  EXPECT_TRUE(DimensionFrom(spin, SpinImages()).dimension);
+  EXPECT_NE(DimensionFrom(spin, patches).error.find("with range_patch does not use it"),
+            std::string::npos);
+  EXPECT_NE(DimensionFrom(patch, SpinImages()).error.find("with spherical_spin does not use it"),
+            std::string::npos);
+  const std::vector<Dimension> dimensions = {*DimensionFrom(spin, SpinImages()).dimension};
+  EXPECT_EQ(CostOfChange(dimensions, {"0.3"}, {"0.4"}), ParameterCost::kViews);
 }
 
 TEST(VariedParametersTest, ANameAloneTakesHalfToTwiceOrAllNames) {

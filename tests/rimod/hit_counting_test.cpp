@@ -1,4 +1,4 @@
-#include "viewer_tools/hit_counting.h"
+#include "rimod/hit_counting.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "viewer_tools/label_file.h"
+#include "io/label_file.h"
 
 #include <gtest/gtest.h>
 

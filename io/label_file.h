@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer_tools/hit_counting.h"
+#include "rimod/hit_counting.h"
 
 namespace rimod {
 
