@@ -29,8 +29,8 @@ void RangeImageStage(benchmark::State& state) {
 }
 
 void InterestPointsStage(benchmark::State& state) {
-  Measure(state, [](const RecordedInput& in, const Execution&) {
-    return FindInterestPoints(in.image, in.params.interest_points);
+  Measure(state, [](const RecordedInput& in, const Execution& execution) {
+    return FindInterestPoints(in.image, in.params.interest_points, execution);
   });
 }
 

@@ -25,7 +25,7 @@ void RequireFitting(const FeatureSet& features, const ModelDatabase& database,
 RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
                              const Execution& execution) {
   const StageScope stage(execution, "range_image");
-  return MakeRangeImage(scan, params.range_image);
+  return MakeRangeImage(scan, params.range_image, execution);
 }
 
 DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,

@@ -66,7 +66,7 @@ FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params
   std::vector<PixelIndex> interest_points;
   {
     const StageScope stage(execution, "interest_points");
-    interest_points = FindInterestPoints(image, params.interest_points);
+    interest_points = FindInterestPoints(image, params.interest_points, execution);
   }
   return DescribeFeatures(image, interest_points, params, execution);
 }

@@ -122,22 +122,30 @@ float SurfaceChangeAt(const RangeImage& image, int row, int column,
   return near_side ? 1.0f : strength;
 }
 
-cv::Mat SurfaceChange(const RangeImage& image, const InterestPointParams& params) {
+cv::Mat SurfaceChange(const RangeImage& image, const InterestPointParams& params,
+                      const Execution& execution) {
   cv::Mat strength(image.height(), image.width(), CV_32F, cv::Scalar(0));
-  for (int row = 0; row < image.height(); ++row) {
+  execution.parallel_for(static_cast<std::size_t>(image.height()), [&](std::size_t i) {
+    const int row = static_cast<int>(i);
     for (int column = 0; column < image.width(); ++column) {
       if (!image.measured(row, column)) continue;
       strength.at<float>(row, column) = SurfaceChangeAt(image, row, column, params);
     }
-  }
+  });
   cv::Mat smooth;
   cv::boxFilter(strength, smooth, CV_32F, cv::Size(3, 3), cv::Point(-1, -1), true,
                 cv::BORDER_REPLICATE);
   return strength.mul(smooth);
 }
 
-std::vector<Candidate> SortedCandidates(const RangeImage& image, const cv::Mat& strength,
-                                        const InterestPointParams& params) {
+// Orders by strength, ties by position in the image.
+bool Weaker(const Candidate& a, const Candidate& b) {
+  return a.strength != b.strength ? a.strength < b.strength : a.index > b.index;
+}
+
+// A heap, the strongest on top: most points are chosen before an eighth of it has been looked at.
+std::vector<Candidate> CandidateHeap(const RangeImage& image, const cv::Mat& strength,
+                                     const InterestPointParams& params) {
   std::vector<Candidate> candidates;
   for (int row = 0; row < image.height(); ++row) {
     for (int column = 0; column < image.width(); ++column) {
@@ -146,9 +154,7 @@ std::vector<Candidate> SortedCandidates(const RangeImage& image, const cv::Mat& 
       if (value > params.min_strength) candidates.push_back({value, row * image.width() + column});
     }
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.strength != b.strength ? a.strength > b.strength : a.index < b.index;
-  });
+  std::make_heap(candidates.begin(), candidates.end(), Weaker);
   return candidates;
 }
 
@@ -222,16 +228,21 @@ std::string InterestPointParams::Kind() const {
 }
 
 std::vector<PixelIndex> FindInterestPoints(const RangeImage& image,
-                                           const InterestPointParams& params) {
+                                           const InterestPointParams& params,
+                                           const Execution& execution) {
   params.Validate();
   if (image.grid().size() == 0) return {};
   const cv::Mat strength = params.measure == InterestMeasure::kHarris
                                ? HarrisStrength(image, params)
-                               : SurfaceChange(image, params);
+                               : SurfaceChange(image, params, execution);
   std::vector<char> suppressed(image.grid().size(), 0);
   std::vector<PixelIndex> chosen;
   CubeCounter cubes(params.cube_side, params.max_points_a_cube);
-  for (const Candidate& candidate : SortedCandidates(image, strength, params)) {
+  std::vector<Candidate> candidates = CandidateHeap(image, strength, params);
+  while (!candidates.empty()) {
+    std::pop_heap(candidates.begin(), candidates.end(), Weaker);
+    const Candidate candidate = candidates.back();
+    candidates.pop_back();
     if (suppressed[candidate.index]) continue;
     const PixelIndex pixel = {candidate.index / image.width(), candidate.index % image.width()};
     if (!cubes.Take(image.point(pixel.row, pixel.column))) continue;

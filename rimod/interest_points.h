@@ -41,6 +41,7 @@ struct InterestPointParams {
 // The interest points of a range image, strongest first, ties by position in the image; measured
 // pixels only. Empty for an image without measured pixels.
 std::vector<PixelIndex> FindInterestPoints(const RangeImage& image,
-                                           const InterestPointParams& params);
+                                           const InterestPointParams& params,
+                                           const Execution& execution = {});
 
 }  // namespace rimod

@@ -149,7 +149,7 @@ void RangeImage::SetNoReturn(int row, int column) {
 }
 
 void RangeImage::AddBeams(const std::vector<Direction>& directions,
-                          const std::vector<double>& ranges) {
+                          const std::vector<double>& ranges, const Execution& execution) {
   // z-buffer: the nearest beam of each pixel; only those are worth computing a point for.
   std::vector<RoundedPixel> nearest(rounded_);
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -162,12 +162,13 @@ void RangeImage::AddBeams(const std::vector<Direction>& directions,
     if (pixel.range != 0 && pixel.range <= range) continue;
     pixel = {range, OffsetSteps(position.column, column), OffsetSteps(position.row, row)};
   }
-  for (int row = 0; row < height(); ++row) {
+  execution.parallel_for(static_cast<std::size_t>(height()), [&](std::size_t i) {
+    const int row = static_cast<int>(i);
     for (int column = 0; column < width(); ++column) {
       const RoundedPixel& pixel = nearest[Index(row, column)];
       if (pixel.range != 0) SetMeasured(row, column, pixel);
     }
-  }
+  });
 }
 
 void RangeImage::AddNoReturn(const Direction& direction) {
@@ -194,23 +195,35 @@ void RangeImageParams::Validate() const {
   }
 }
 
-RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params) {
+RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
+                          const Execution& execution) {
   params.Validate();
   const Eigen::Isometry3d T_sensor_local = scan.T_local_sensor.inverse();
 
+  // Slots by point, range 0 where it does not count; then those that do move together.
+  constexpr std::size_t kBatches = 64;
+  std::vector<Direction> directions(scan.points.size());
+  std::vector<double> ranges(scan.points.size());
+  execution.parallel_for(kBatches, [&](std::size_t batch) {
+    const std::size_t end = (batch + 1) * ranges.size() / kBatches;
+    for (std::size_t i = batch * ranges.size() / kBatches; i < end; ++i) {
+      const Eigen::Vector3d p_sensor = T_sensor_local * scan.points[i].cast<double>();
+      const double range = p_sensor.norm();
+      if (!(range >= params.min_range && range > 0.0)) continue;
+      ranges[i] = range;
+      directions[i] = DirectionOf(p_sensor);
+    }
+  });
   Bounds bounds;
-  std::vector<Direction> directions;
-  std::vector<double> ranges;
-  directions.reserve(scan.points.size());
-  ranges.reserve(scan.points.size());
-  for (const Eigen::Vector3f& p_local : scan.points) {
-    const Eigen::Vector3d p_sensor = T_sensor_local * p_local.cast<double>();
-    const double range = p_sensor.norm();
-    if (!(range >= params.min_range && range > 0.0)) continue;
-    ranges.push_back(range);
-    directions.push_back(DirectionOf(p_sensor));
-    bounds.Include(directions.back());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (ranges[i] == 0.0) continue;
+    bounds.Include(directions[i]);
+    ranges[count] = ranges[i];
+    directions[count++] = directions[i];
   }
+  ranges.resize(count);
+  directions.resize(count);
   std::vector<Direction> no_returns;
   no_returns.reserve(scan.no_return_directions.size());
   for (const Eigen::Vector3f& beam_local : scan.no_return_directions) {
@@ -221,7 +234,7 @@ RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params) {
   constexpr double kStep = 1.25;  // from one resolution to the next
   for (double resolution = params.resolution;; resolution *= kStep) {
     RangeImage image(GridFor(bounds, resolution), scan.T_local_sensor);
-    image.AddBeams(directions, ranges);
+    image.AddBeams(directions, ranges, execution);
     for (const Direction& direction : no_returns) image.AddNoReturn(direction);
     const bool coarsest = resolution * kStep > params.max_resolution;
     if (coarsest || FilledShare(image) >= params.min_filled) return image;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "rimod/execution.h"
 #include "rimod/scan.h"
 
 namespace rimod {
@@ -75,7 +76,8 @@ class RangeImage {
   void SetNoReturn(int row, int column);
   // Keeps the nearer of the pixel's point and each beam's (z-buffer); one range (m) a direction.
   // Directions outside the grid are left out.
-  void AddBeams(const std::vector<Direction>& directions, const std::vector<double>& ranges);
+  void AddBeams(const std::vector<Direction>& directions, const std::vector<double>& ranges,
+                const Execution& execution = {});
   // Marks a pixel in which nothing is measured.
   void AddNoReturn(const Direction& direction);
 
@@ -119,6 +121,7 @@ struct RangeImageParams {
 // The z-buffered range image of a scan from its sensor position; the grid is the smallest that
 // holds all points and no-return beams, its edges at whole multiples of the resolution. An empty
 // scan gives an image of size 0.
-RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params);
+RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
+                          const Execution& execution = {});
 
 }  // namespace rimod

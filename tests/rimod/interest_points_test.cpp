@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/io/random_values.h"
+#include "tests/support/executions.h"
 #include "tests/support/ray_caster.h"
 
 namespace rimod {
@@ -239,6 +240,24 @@ TEST(InterestPointsTest, TinyAndRandomImagesAreHarmless) {
       const std::vector<PixelIndex> found = FindInterestPoints(image, Params(measure));
       EXPECT_LE(static_cast<int>(found.size()), image.CountMeasured());
       EXPECT_EQ(FindInterestPoints(image, Params(measure)), found);
+    }
+  }
+}
+
+TEST(InterestPointsTest, ThreadsAndOrderDoNotMatter) {
+  const RangeImage image = RandomValues(32).AnImage(90, 70);
+  for (const InterestMeasure measure :
+       {InterestMeasure::kHarris, InterestMeasure::kSurfaceChange}) {
+    const InterestPointParams params = Params(measure);
+    const std::vector<PixelIndex> alone = FindInterestPoints(image, params);
+    ASSERT_GT(alone.size(), 20u);
+    for (const Execution& execution : {OnThreads(4), Backwards()}) {
+      const std::vector<PixelIndex> other = FindInterestPoints(image, params, execution);
+      ASSERT_EQ(other.size(), alone.size());
+      for (std::size_t i = 0; i < alone.size(); ++i) {
+        EXPECT_EQ(other[i].row, alone[i].row);
+        EXPECT_EQ(other[i].column, alone[i].column);
+      }
     }
   }
 }

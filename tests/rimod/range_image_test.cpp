@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "tests/io/random_values.h"
+#include "tests/support/executions.h"
 #include "tests/support/matchers.h"
 
 namespace rimod {
@@ -346,6 +347,24 @@ TEST(RangeImageParamsTest, RejectsWhatIsOutOfRange) {
   for (const double min_range : {-0.1, HUGE_VAL, std::nan("")})
     EXPECT_TRUE(Complains([&] { Params(0.01, min_range).Validate(); }, {"min_range"}));
   EXPECT_NO_THROW(Params().Validate());
+}
+
+TEST(MakeRangeImageTest, ThreadsAndOrderDoNotMatter) {
+  Scan scan = RandomValues(31).AScan(5003, 301);
+  scan.points[17].setConstant(std::numeric_limits<float>::quiet_NaN());
+  scan.points.insert(scan.points.end(), scan.points.begin(), scan.points.begin() + 100);
+  const RangeImage alone = MakeRangeImage(scan, Params());
+  ASSERT_GT(alone.CountMeasured(), 1000);
+  for (const Execution& execution : {OnThreads(4), Backwards()}) {
+    const RangeImage other = MakeRangeImage(scan, Params(), execution);
+    ASSERT_TRUE(other.grid() == alone.grid());
+    for (int row = 0; row < alone.height(); ++row) {
+      for (int column = 0; column < alone.width(); ++column) {
+        ASSERT_EQ(other.pixel(row, column), alone.pixel(row, column));
+        ASSERT_EQ(other.point(row, column), alone.point(row, column));
+      }
+    }
+  }
 }
 
 }  // namespace
