@@ -21,7 +21,7 @@ class ShardSpeaker {
   ShardSpeaker(const ModelShare& share, const PipelineParams& params, const Channels& channels,
                PacedPublisher* publisher);
 
-  // That it looks for now: it is ready.
+  // How many models it looks for; from the first call on it is ready.
   void SetNumModels(int num_models) { num_models_ = num_models; }
   bool is_ready() const { return num_models_ >= 0; }
   // Twice a second, once it is ready.

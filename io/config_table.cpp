@@ -183,7 +183,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"ranking", "second_min_share", &r.second_min_share, ".. 0 .. 1"},
       {"ranking", "min_known", &r.min_known, "of the points that must have nothing in front; 0 .. 1"},
       {"ranking", "num_models", &r.num_models, "that share the work, for matchers that have a part of them; 0 = those loaded"},
-      {"ranking", "full_models", &r.full_models, "with more models each gets less work, by this over their number to the power of 0.6; >= 1"},
+      {"ranking", "full_models", &r.full_models, "with more models each gets less work, by this over their number to the power of 0.65; >= 1"},
       {"ranking", "max_scanned", &r.max_scanned, "best of each model: among these different poses are looked for; >= 1"},
       {"ranking", "refined_always", &r.refined.always, "of each model: so many of the best different poses are refined ..; >= 0"},
       {"ranking", "refined_most", &r.refined.most, ".. and up to this; >= refined_always"},
@@ -204,6 +204,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"refinement", "judged_last_gate", &f.judged_last_gate, "m, .. and in the end; > 0"},
       {"refinement", "damping", &f.damping, "of the points' number, keeps what they do not determine; > 0"},
       {"refinement", "tilt_damping", &f.tilt_damping, "the same for the tilt from the vertical; > 0"},
+      {"refinement", "upright_tilt_deg", DegreesOf{&f.upright_tilt}, "what leans less before it is judged is taken to stand upright; 0 = nothing .. 28"},
 
       {"evidence", "normal_radius", &e.normal_radius, "m, a scene normal is that of the points this near; > 0"},
       {"evidence", "depth_tolerance", &e.depth_tolerance, "m, measured against rendered depth on a surface seen head-on; > 0"},

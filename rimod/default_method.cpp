@@ -61,25 +61,27 @@ std::vector<Hypothesis> PosesFromCorrespondences(const std::vector<Correspondenc
 }
 
 // Sets the figures of a hypothesis at its pose; false when it is hopeless.
-bool SetFigures(const Scene& scene, const ModelDatabase& database, double epsilon,
-                const RankingParams& params, Hypothesis* hypothesis) {
+bool SetFigures(const Scene& scene, const ModelDatabase& database, ViewComparison* comparison,
+                Hypothesis* hypothesis) {
   RankingFigures& figures = hypothesis->figures;
   const Eigen::Isometry3f& pose = hypothesis->T_sensor_object;
+  if (!comparison->Compare(database.ranking_models()[hypothesis->model], pose, &figures))
+    return false;
   figures.tilt = std::acos(std::clamp(pose.linear()(2, 2), -1.0f, 1.0f));
   figures.pixels_across = static_cast<float>(
       PixelsAcross(scene, database.models()[hypothesis->model], pose.cast<double>()));
-  return CompareViewPoints(scene, database.ranking_models()[hypothesis->model], pose, epsilon,
-                           params, &figures);
+  return true;
 }
 
 // Scores all models' hypotheses before refinement, each on its own.
 void ScoreHypotheses(const Scene& scene, const ModelDatabase& database, const RankingParams& params,
                      const Execution& execution, std::vector<std::vector<Hypothesis>>* of_models) {
   execution.parallel_for(kBatches, [&](std::size_t batch) {
+    ViewComparison comparison(scene, params.coarse_epsilon, params);
     for (std::vector<Hypothesis>& hypotheses : *of_models) {
       for (std::size_t i = batch; i < hypotheses.size(); i += kBatches) {
         Hypothesis& hypothesis = hypotheses[i];
-        if (SetFigures(scene, database, params.coarse_epsilon, params, &hypothesis))
+        if (SetFigures(scene, database, &comparison, &hypothesis))
           hypothesis.score = Probability(kProposalWeights, RankFigures(hypothesis.figures));
       }
     }
@@ -157,7 +159,8 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
     if (view < 0) return;
     hypothesis.T_sensor_object =
         RefinePose(scene, model.views[view].surface, hypothesis.T_sensor_object, schedule);
-    if (SetFigures(scene, database, params.ranking.fine_epsilon, params.ranking, &hypothesis))
+    ViewComparison comparison(scene, params.ranking.fine_epsilon, params.ranking);
+    if (SetFigures(scene, database, &comparison, &hypothesis))
       hypothesis.score = Probability(kRankWeights, RankFigures(hypothesis.figures));
   });
 }

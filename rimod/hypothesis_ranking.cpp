@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "rimod/check.h"
@@ -9,34 +10,35 @@
 namespace rimod {
 namespace {
 
-// What one of the surface's points says: the pixel where it falls, its distance from the sensor and
-// its normal (sensor frame) as far as it is needed.
-template <typename Normal>
-void Count(const Scene& scene, int pixel, float range, const Normal& normal, float epsilon,
-           RankingFigures* figures) {
-  if (pixel < 0) return;
-  const float measured = scene.range(pixel);
-  if (measured == 0.0f) return;
-  const float behind = measured - range;
-  if (behind < -epsilon) return;  // occluded
-  figures->known += 1.0f;
-  if (behind > epsilon) {
-    figures->looked_through += 1.0f;
-    return;
-  }
-  figures->at_place += 1.0f - std::abs(behind) / epsilon;
-  figures->hits += 1.0f;
-  figures->agreeing += scene.normal(pixel).dot(normal());
+// Of pixels where nothing is known: as what is hidden, such points say nothing.
+constexpr float kUnknown = -std::numeric_limits<float>::infinity();
+
+// How many reach the threshold.
+int CountFrom(const float* values, std::size_t count, float threshold) {
+  int reach = 0;
+  for (std::size_t i = 0; i < count; ++i) reach += values[i] >= threshold;
+  return reach;
 }
 
-void CountOutside(const Scene& scene, int pixel, float range, float epsilon,
-                  RankingFigures* figures) {
-  if (pixel < 0) return;
-  const float measured = scene.range(pixel);
-  if (measured == 0.0f) return;
-  const float behind = measured - range;
-  if (behind > epsilon) figures->jumps += 1.0f;
-  if (std::abs(behind) <= epsilon) figures->goes_on += 1.0f;
+int CountAbove(const float* values, std::size_t count, float threshold) {
+  int above = 0;
+  for (std::size_t i = 0; i < count; ++i) above += values[i] > threshold;
+  return above;
+}
+
+// Sum of 1 - |difference| / epsilon of those within epsilon; in four sums, which processors add at
+// once.
+float Closeness(const float* differences, std::size_t count, float epsilon) {
+  constexpr std::size_t kLanes = 4;
+  float sums[kLanes] = {};
+  const auto add = [&](std::size_t i, std::size_t lane) {
+    sums[lane] += std::max(0.0f, 1.0f - std::abs(differences[i]) / epsilon);
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) add(i + lane, lane);
+  for (; i < count; ++i) add(i, 0);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 void Normalise(float count, float outside_count, RankingFigures* figures) {
@@ -113,43 +115,75 @@ int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_obj
   return nearest;
 }
 
-bool CompareViewPoints(const Scene& scene, const RankingModel& model,
-                       const Eigen::Isometry3f& T_sensor_object, double epsilon,
-                       const RankingParams& params, RankingFigures* figures) {
+ViewComparison::ViewComparison(const Scene& scene, double epsilon, const RankingParams& params)
+    : scene_(scene), epsilon_(static_cast<float>(epsilon)), params_(params) {}
+
+// Fills behind_ for the points [begin, end).
+void ViewComparison::Look(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+                          std::size_t begin, std::size_t end) {
+  scene_.Project(points, T_sensor_object, begin, end, &projected_);
+  behind_.resize(std::max(behind_.size(), end));
+  for (std::size_t i = begin; i < end; ++i) {
+    const int pixel = projected_.pixels[i];
+    const float measured = pixel < 0 ? 0.0f : scene_.range(pixel);
+    behind_[i] = measured == 0.0f ? kUnknown : measured - projected_.ranges[i];
+  }
+}
+
+void ViewComparison::ComparePoints(const RankingView& view,
+                                   const Eigen::Isometry3f& T_sensor_object, std::size_t begin,
+                                   std::size_t end, RankingFigures* figures) {
+  Look(view.points, T_sensor_object, begin, end);
+  const float* const behind = behind_.data() + begin;
+  const std::size_t count = end - begin;
+  const int known = CountFrom(behind, count, -epsilon_);
+  const int looked_through = CountAbove(behind, count, epsilon_);
+  figures->known += static_cast<float>(known);
+  figures->looked_through += static_cast<float>(looked_through);
+  figures->hits += static_cast<float>(known - looked_through);
+  figures->at_place += Closeness(behind, count, epsilon_);
+  float agreeing = 0.0f;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (!(std::abs(behind_[i]) <= epsilon_)) continue;
+    const Eigen::Vector3f normal = T_sensor_object.linear() * view.surface.normals[i];
+    agreeing += scene_.normal(projected_.pixels[i]).dot(normal);
+  }
+  figures->agreeing += agreeing;
+}
+
+void ViewComparison::CompareOutside(const RankingView& view,
+                                    const Eigen::Isometry3f& T_sensor_object,
+                                    RankingFigures* figures) {
+  const std::size_t count = view.outside.size();
+  Look(view.outside, T_sensor_object, 0, count);
+  const int jumps = CountAbove(behind_.data(), count, epsilon_);
+  figures->jumps = static_cast<float>(jumps);
+  figures->goes_on = static_cast<float>(CountFrom(behind_.data(), count, -epsilon_) - jumps);
+}
+
+bool ViewComparison::Compare(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object,
+                             RankingFigures* figures) {
   const int nearest = NearestView(model, T_sensor_object);
   if (nearest < 0) return false;
   const RankingView& view = model.views[nearest];
   const std::size_t count = view.surface.points.size();
   if (count == 0) return false;
-  const float eps = static_cast<float>(epsilon);
   for (float* figure : {&figures->at_place, &figures->hits, &figures->looked_through,
                         &figures->known, &figures->agreeing, &figures->goes_on, &figures->jumps})
     *figure = 0.0f;
-  ProjectedPoints projected;
-  const auto compare = [&](std::size_t begin, std::size_t end) {
-    scene.Project(view.points, T_sensor_object, begin, end, &projected);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto normal = [&]() -> Eigen::Vector3f {
-        return T_sensor_object.linear() * view.surface.normals[i];
-      };
-      Count(scene, projected.pixels[i], projected.ranges[i], normal, eps, figures);
-    }
-  };
-  const std::size_t first = std::min(count, static_cast<std::size_t>(params.first_points));
+  const std::size_t first = std::min(count, static_cast<std::size_t>(params_.first_points));
   const auto hopeless = [&](std::size_t compared, double min_share) {
-    return figures->known < params.min_known * static_cast<double>(compared) ||
+    return figures->known < params_.min_known * static_cast<double>(compared) ||
            figures->hits < min_share * figures->known;
   };
-  compare(0, first);
-  if (hopeless(first, params.first_min_share)) return false;
+  ComparePoints(view, T_sensor_object, 0, first, figures);
+  if (hopeless(first, params_.first_min_share)) return false;
   const std::size_t second =
-      std::clamp(static_cast<std::size_t>(params.second_points), first, count);
-  compare(first, second);
-  if (hopeless(second, params.second_min_share)) return false;
-  compare(second, count);
-  scene.Project(view.outside, T_sensor_object, 0, view.outside.size(), &projected);
-  for (std::size_t i = 0; i < view.outside.size(); ++i)
-    CountOutside(scene, projected.pixels[i], projected.ranges[i], eps, figures);
+      std::clamp(static_cast<std::size_t>(params_.second_points), first, count);
+  ComparePoints(view, T_sensor_object, first, second, figures);
+  if (hopeless(second, params_.second_min_share)) return false;
+  ComparePoints(view, T_sensor_object, second, count, figures);
+  CompareOutside(view, T_sensor_object, figures);
   Normalise(static_cast<float>(count), static_cast<float>(view.outside.size()), figures);
   return true;
 }

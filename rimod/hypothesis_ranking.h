@@ -42,7 +42,7 @@ struct RankingParams {
   ModelQuota refined{120, 240, 0.002};
   ModelQuota judged{8, 40, 0.01};
   // Those that a first look finds less probable are not looked at closely; 0 .. 1
-  double min_screened_score = 0.03;
+  double min_screened_score = 0.003;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
   void Validate() const;
@@ -87,10 +87,30 @@ struct RankingFigures {
   float votes = 1.0f;                // hypotheses of the same pose, with itself
 };
 
-// Sets the figures of the view's points, leaves the others. False for hopeless poses: too few of
-// the first points at their place.
-bool CompareViewPoints(const Scene& scene, const RankingModel& model,
-                       const Eigen::Isometry3f& T_sensor_object, double epsilon,
-                       const RankingParams& params, RankingFigures* figures);
+// Compares poses with one scene, one after the other; of use to one thread.
+class ViewComparison {
+ public:
+  // The scene and the parameters must outlive it. Epsilon: m, depth difference of a hit.
+  ViewComparison(const Scene& scene, double epsilon, const RankingParams& params);
+
+  // Sets the figures of the view's points, leaves the others. False for hopeless poses: too few of
+  // the first points at their place.
+  bool Compare(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object,
+               RankingFigures* figures);
+
+ private:
+  void Look(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object, std::size_t begin,
+            std::size_t end);
+  void ComparePoints(const RankingView& view, const Eigen::Isometry3f& T_sensor_object,
+                     std::size_t begin, std::size_t end, RankingFigures* figures);
+  void CompareOutside(const RankingView& view, const Eigen::Isometry3f& T_sensor_object,
+                      RankingFigures* figures);
+
+  const Scene& scene_;
+  const float epsilon_;  // m
+  const RankingParams& params_;
+  ProjectedPoints projected_;  // of the points last looked at
+  std::vector<float> behind_;  // m, how far behind them the scene is
+};
 
 }  // namespace rimod

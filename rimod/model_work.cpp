@@ -8,7 +8,10 @@ namespace {
 
 // With more models than full_models each gets this power of full_models over their number: a
 // hundred cost about four times what seven do, and lose least that way (docs/benchmarks.md).
-constexpr double kShareExponent = 0.6;
+constexpr double kShareExponent = 0.65;
+
+// Of a feature with each model: a single one loses too many objects.
+constexpr int kFewestMatches = 2;
 
 // Times the matches and checks of a feature where a scene has few.
 constexpr double kMostMatches = 5.0;
@@ -27,6 +30,10 @@ PipelineParams SharedAmongModels(const PipelineParams& params, int num_models) {
         &shared.matching.min_correspondences, &ranking.max_scanned, &ranking.refined.always,
         &ranking.refined.most, &ranking.judged.always, &ranking.judged.most})
     *count = static_cast<int>(std::ceil(share * *count));
+  shared.matching.max_matches =
+      std::max(shared.matching.max_matches, std::min(kFewestMatches, params.matching.max_matches));
+  // The more models, the less probable each candidate is.
+  ranking.min_screened_score = std::min(ranking.min_screened_score / share, 1.0);
   return shared;
 }
 

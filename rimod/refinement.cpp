@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rimod/check.h"
@@ -11,26 +12,6 @@ namespace {
 
 using Vector6f = Eigen::Matrix<float, 6, 1>;
 using Matrix6f = Eigen::Matrix<float, 6, 6>;
-
-// The scene point nearest to p among the 3 x 3 pixels around its own, nearer than gate; -1: none.
-int PairedPixel(const Scene& scene, int own, const Eigen::Vector3f& p, float gate) {
-  const int width = scene.grid().width, height = scene.grid().height;
-  const int row = own / width, column = own % width;
-  int paired = -1;
-  float best_sq = gate * gate;
-  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, height - 1); ++r) {
-    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, width - 1); ++c) {
-      const int pixel = r * width + c;
-      const float range = scene.range(pixel);
-      if (range == 0.0f || std::isinf(range)) continue;
-      const float distance_sq = (scene.point(pixel) - p).squaredNorm();
-      if (distance_sq >= best_sq) continue;
-      best_sq = distance_sq;
-      paired = pixel;
-    }
-  }
-  return paired;
-}
 
 // The part of a surface that may face the sensor near a pose.
 struct FacingSurface {
@@ -51,48 +32,100 @@ FacingSurface FacingPart(const SurfaceSample& surface, const Eigen::Isometry3f& 
   return part;
 }
 
-// Normal equations of sum w (n . (q - p - omega x (p - centre) - v))^2.
-struct Equations {
-  Matrix6f A = Matrix6f::Zero();
-  Vector6f b = Vector6f::Zero();
-  int count = 0;
+// Points of a surface and the scene's points that they are drawn to, by coordinate. Has room for
+// lanes to be filled up.
+class Pairs {
+ public:
+  using Lanes = Eigen::Array4f;
+  static constexpr std::size_t kLanes = 4;
+
+  explicit Pairs(std::size_t most) {
+    for (std::vector<float>& column : columns_) column.resize(most + kLanes);
+  }
+  void Clear() { size_ = 0; }
+  // The arm: m, from the middle of the surface; the residual: m, along the surface's normal.
+  void Add(const Eigen::Vector3f& arm, const Eigen::Vector3f& normal, float residual,
+           float weight) {
+    const std::array<float, 8> values = {arm.x(),    arm.y(),    arm.z(),  normal.x(),
+                                         normal.y(), normal.z(), residual, weight};
+    for (std::size_t i = 0; i < values.size(); ++i) columns_[i][size_] = values[i];
+    ++size_;
+  }
+  // Makes the number of pairs a multiple of kLanes with some that weigh nothing.
+  void FillUp() {
+    while (size_ % kLanes != 0) Add(Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0.0f, 0.0f);
+  }
+  std::size_t size() const { return size_; }
+  // The values of pairs [i, i + kLanes), in the order of Add().
+  std::array<Lanes, 8> At(std::size_t i) const {
+    std::array<Lanes, 8> values;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = Eigen::Map<const Lanes>(columns_[k].data() + i);
+    return values;
+  }
+
+ private:
+  std::array<std::vector<float>, 8> columns_;
+  std::size_t size_ = 0;
 };
 
-Equations Linearise(const Scene& scene, const FacingSurface& surface,
-                    const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& centre,
-                    float gate, ProjectedPoints* projected) {
-  Equations equations;
+void PairUp(const Scene& scene, const FacingSurface& surface,
+            const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& centre, float gate,
+            ProjectedPoints* projected, Pairs* pairs) {
+  pairs->Clear();
   scene.Project(surface.points, T_sensor_object, 0, surface.points.size(), projected);
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     if (projected->pixels[i] < 0) continue;
     const Eigen::Vector3f p = T_sensor_object * surface.points.At(i);
     const Eigen::Vector3f n = T_sensor_object.linear() * surface.normals[i];
     if (n.dot(p) > 0.0f) continue;  // faces away
-    const int pixel = PairedPixel(scene, projected->pixels[i], p, gate);
+    const int pixel = scene.NearestPixel(projected->pixels[i], p, gate);
     if (pixel < 0) continue;
     constexpr float kMinCosine = 0.5f;  // between the normals: 60 degrees
     const Eigen::Vector3f& scene_normal = scene.normal(pixel);
     if (scene_normal.squaredNorm() > 0.0f && scene_normal.dot(n) < kMinCosine) continue;
     const Eigen::Vector3f apart = scene.point(pixel) - p;
-    const float residual = n.dot(apart);
     const float share = apart.squaredNorm() / (gate * gate);
     const float weight = (1.0f - share) * (1.0f - share);  // Tukey's
-    const Eigen::Vector3f arm = p - centre;
-    Vector6f jacobian;
-    jacobian << arm.y() * n.z() - arm.z() * n.y(), arm.z() * n.x() - arm.x() * n.z(),
-        arm.x() * n.y() - arm.y() * n.x(), n.x(), n.y(), n.z();
-    const Vector6f weighted = weight * jacobian;
-    for (int column = 0; column < 6; ++column)
-      equations.A.col(column) += weighted[column] * jacobian;
-    equations.b += residual * weighted;
-    ++equations.count;
+    pairs->Add(p - centre, n, n.dot(apart), weight);
+  }
+}
+
+// Normal equations of sum w (n . (q - p - omega x (p - centre) - v))^2.
+struct Equations {
+  Matrix6f A = Matrix6f::Zero();
+  Vector6f b = Vector6f::Zero();
+};
+
+Equations Linearise(const Pairs& pairs) {
+  using Lanes = Pairs::Lanes;
+  std::array<std::array<Lanes, 6>, 6> A;
+  std::array<Lanes, 6> b;
+  for (std::array<Lanes, 6>& row : A) row.fill(Lanes::Zero());
+  b.fill(Lanes::Zero());
+  for (std::size_t i = 0; i < pairs.size(); i += Pairs::kLanes) {
+    const auto [x, y, z, nx, ny, nz, residual, weight] = pairs.At(i);
+    const std::array<Lanes, 6> jacobian = {
+        y * nz - z * ny, z * nx - x * nz, x * ny - y * nx, nx, ny, nz};
+    for (int row = 0; row < 6; ++row) {
+      const Lanes weighted = weight * jacobian[row];
+      b[row] += residual * weighted;
+      for (int column = row; column < 6; ++column) A[row][column] += weighted * jacobian[column];
+    }
+  }
+  Equations equations;
+  for (int row = 0; row < 6; ++row) {
+    equations.b[row] = b[row].sum();
+    for (int column = row; column < 6; ++column)
+      equations.A(row, column) = equations.A(column, row) = A[row][column].sum();
   }
   return equations;
 }
 
 // The step, rotation vector and translation.
-Vector6f Solve(Equations equations, double damping, double tilt_damping, float radius) {
-  const float count = static_cast<float>(equations.count);
+Vector6f Solve(Equations equations, std::size_t num_pairs, double damping, double tilt_damping,
+               float radius) {
+  const float count = static_cast<float>(num_pairs);
   const float weight = static_cast<float>(damping) * count;
   const float tilt_weight = static_cast<float>(tilt_damping) * count * radius * radius;
   Vector6f resistance;
@@ -100,6 +133,68 @@ Vector6f Solve(Equations equations, double damping, double tilt_damping, float r
   equations.A.diagonal() += resistance;
   return equations.A.ldlt().solve(equations.b);
 }
+
+// The steps of one surface's refinement.
+class Refiner {
+ public:
+  Refiner(const Scene& scene, const SurfaceSample& surface,
+          const Eigen::Isometry3f& T_sensor_object)
+      : scene_(scene),
+        facing_(FacingPart(surface, T_sensor_object)),
+        pairs_(facing_.points.size()),
+        T_(T_sensor_object) {
+    for (const Eigen::Vector3f& point : surface.points) middle_ += point;
+    middle_ /= static_cast<float>(surface.points.size());
+    for (const Eigen::Vector3f& point : surface.points)
+      radius_ = std::max(radius_, (point - middle_).norm());
+  }
+
+  const Eigen::Isometry3f& pose() const { return T_; }
+
+  // One iteration; false when there was too little to go by.
+  bool Step(float gate, double damping, double tilt_damping) {
+    const Eigen::Vector3f centre = T_ * middle_;
+    PairUp(scene_, facing_, T_, centre, gate, &projected_, &pairs_);
+    const std::size_t num_pairs = pairs_.size();
+    constexpr std::size_t kMinPairs = 6;  // as many as degrees of freedom
+    if (num_pairs < kMinPairs) return false;
+    pairs_.FillUp();
+    const Vector6f step = Solve(Linearise(pairs_), num_pairs, damping, tilt_damping, radius_);
+    if (!step.allFinite()) return false;
+    const float angle = step.head<3>().norm();
+    Eigen::Matrix3f turn = Eigen::Matrix3f::Identity();
+    if (angle > 1e-9f) turn = Eigen::AngleAxisf(angle, step.head<3>() / angle).toRotationMatrix();
+    Turn(turn, step.tail<3>());
+    return true;
+  }
+
+  // Of the object's z-axis, rad.
+  float Tilt() const { return std::acos(std::clamp(T_.linear()(2, 2), -1.0f, 1.0f)); }
+
+  void StandUpright() {
+    Turn(Eigen::Quaternionf::FromTwoVectors(T_.linear().col(2), Eigen::Vector3f::UnitZ())
+             .toRotationMatrix(),
+         Eigen::Vector3f::Zero());
+  }
+
+ private:
+  // About the surface's middle, then moved.
+  void Turn(const Eigen::Matrix3f& turn, const Eigen::Vector3f& shift) {
+    const Eigen::Vector3f centre = T_ * middle_;
+    Eigen::Isometry3f move = Eigen::Isometry3f::Identity();
+    move.linear() = turn;
+    move.translation() = centre + shift - turn * centre;
+    T_ = move * T_;
+  }
+
+  const Scene& scene_;
+  FacingSurface facing_;
+  Pairs pairs_;
+  ProjectedPoints projected_;
+  Eigen::Isometry3f T_;
+  Eigen::Vector3f middle_ = Eigen::Vector3f::Zero();
+  float radius_ = 0.0f;  // m, of the surface about its middle
+};
 
 }  // namespace
 
@@ -113,53 +208,41 @@ void RefinementParams::Validate() const {
   CheckWithin("refinement judged_last_gate", judged_last_gate, 1e-3, 10.0);
   CheckWithin("refinement damping", damping, 1e-6, 10.0);
   CheckWithin("refinement tilt_damping", tilt_damping, 1e-6, 1e6);
+  CheckWithin("refinement upright_tilt", upright_tilt, 0.0, 0.5);
 }
 
 RefinementSchedule RefinementParams::BeforeRanking() const {
-  return {coarse_iterations, coarse_gate, fine_gate, damping, tilt_damping};
+  return {coarse_iterations, coarse_gate, fine_gate, damping, tilt_damping, 0.0};
 }
 
 RefinementSchedule RefinementParams::BeforeScreening() const {
-  return {screening_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
+  return {screening_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping, 0.0};
 }
 
 RefinementSchedule RefinementParams::BeforeJudging() const {
-  return {fine_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
+  return {fine_iterations, judged_first_gate, judged_last_gate,
+          damping,         tilt_damping,      upright_tilt};
 }
 
 Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
                              const Eigen::Isometry3f& T_sensor_object,
                              const RefinementSchedule& schedule) {
   if (surface.points.empty()) return T_sensor_object;
-  const FacingSurface facing = FacingPart(surface, T_sensor_object);
-  ProjectedPoints projected;
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  for (const Eigen::Vector3f& point : surface.points) middle += point;
-  middle /= static_cast<float>(surface.points.size());
-  float radius = 0.0f;
-  for (const Eigen::Vector3f& point : surface.points)
-    radius = std::max(radius, (point - middle).norm());
-
-  Eigen::Isometry3f T = T_sensor_object;
+  Refiner refiner(scene, surface, T_sensor_object);
   for (int i = 0; i < schedule.iterations; ++i) {
     const double progress =
         schedule.iterations > 1 ? static_cast<double>(i) / (schedule.iterations - 1) : 1.0;
-    const float gate = static_cast<float>(
-        schedule.first_gate * std::pow(schedule.last_gate / schedule.first_gate, progress));
-    const Eigen::Vector3f centre = T * middle;
-    const Equations equations = Linearise(scene, facing, T, centre, gate, &projected);
-    constexpr int kMinPairs = 6;  // as many as degrees of freedom
-    if (equations.count < kMinPairs) break;
-    const Vector6f step = Solve(equations, schedule.damping, schedule.tilt_damping, radius);
-    if (!step.allFinite()) break;
-    const float angle = step.head<3>().norm();
-    Eigen::Isometry3f move = Eigen::Isometry3f::Identity();
-    if (angle > 1e-9f)
-      move.linear() = Eigen::AngleAxisf(angle, step.head<3>() / angle).toRotationMatrix();
-    move.translation() = centre + step.tail<3>() - move.linear() * centre;
-    T = move * T;
+    const double gate =
+        schedule.first_gate * std::pow(schedule.last_gate / schedule.first_gate, progress);
+    if (!refiner.Step(static_cast<float>(gate), schedule.damping, schedule.tilt_damping)) break;
   }
-  return T;
+  if (!(static_cast<double>(refiner.Tilt()) < schedule.upright_tilt)) return refiner.pose();
+  refiner.StandUpright();
+  constexpr int kUprightIterations = 3;
+  constexpr double kNoTilt = 1e6;  // damping
+  for (int i = 0; i < kUprightIterations; ++i)
+    if (!refiner.Step(static_cast<float>(schedule.last_gate), schedule.damping, kNoTilt)) break;
+  return refiner.pose();
 }
 
 }  // namespace rimod

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,32 +11,80 @@
 namespace rimod {
 namespace {
 
-// Normal at a pixel from the pixels around it, as far as radius reaches, at most kMaxReach.
-Eigen::Vector3f NormalOf(const RangeImage& image, int row, int column, float radius) {
-  constexpr int kMaxReach = 6, kSamples = 2;  // pixels; looks at (2 * kSamples + 1)^2 of them
-  constexpr int kMinPoints = 5;
+using Lanes = Eigen::Array4f;
+constexpr int kLanes = 4;
+
+// Sums over offsets, m, in four lanes each.
+struct OffsetSums {
+  Lanes count = Lanes::Zero();
+  std::array<Lanes, 3> offsets = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
+  std::array<Lanes, 6> products = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero(), Lanes::Zero(),
+                                   Lanes::Zero(), Lanes::Zero()};  // xx xy xz yy yz zz
+  void Add(Lanes x, Lanes y, Lanes z, float radius_sq) {
+    const Lanes distance_sq = x * x + y * y + z * z;
+    Lanes weight;
+    for (int lane = 0; lane < kLanes; ++lane)
+      weight[lane] = distance_sq[lane] <= radius_sq ? 1.0f : 0.0f;
+    count += weight;
+    x *= weight;
+    y *= weight;
+    z *= weight;
+    offsets[0] += x;
+    offsets[1] += y;
+    offsets[2] += z;
+    products[0] += x * x;
+    products[1] += x * y;
+    products[2] += x * z;
+    products[3] += y * y;
+    products[4] += y * z;
+    products[5] += z * z;
+  }
+  Eigen::Matrix3f Covariance() const {
+    const float n = count.sum();
+    const Eigen::Vector3f mean =
+        Eigen::Vector3f(offsets[0].sum(), offsets[1].sum(), offsets[2].sum()) / n;
+    Eigen::Matrix3f mean_products;
+    const float xy = products[1].sum(), xz = products[2].sum(), yz = products[4].sum();
+    mean_products << products[0].sum(), xy, xz, xy, products[3].sum(), yz, xz, yz,
+        products[5].sum();
+    return mean_products / n - mean * mean.transpose();
+  }
+};
+
+// Normal at a measured pixel from the pixels around it, as far as radius reaches, at most the
+// grid's margin.
+Eigen::Vector3f NormalOf(const RangeImage& image, const PointGrid& points, int row, int column,
+                         float radius) {
+  constexpr int kSamples = 2;  // looks at about (2 * kSamples + 1)^2 pixels
+  constexpr int kMostAcross = 2 * PointGrid::kMargin + 1;
+  constexpr float kMinPoints = 5.0f;
   const Eigen::Vector3f& centre = image.point(row, column);
   const float pixel = static_cast<float>(image.grid().resolution) * image.range(row, column);
-  const int reach = std::clamp(static_cast<int>(radius / pixel), 1, kMaxReach);
+  const int reach = std::clamp(static_cast<int>(radius / pixel), 1, PointGrid::kMargin);
   const int step = std::max(1, reach / kSamples);
   const float radius_sq = std::max(radius * radius, 8.0f * pixel * pixel);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f products = Eigen::Matrix3f::Zero();
-  int count = 0;
+  const float beyond = 2.0f * std::sqrt(radius_sq);  // what fills up a row's last lanes
+  std::array<float, kMostAcross + kLanes> x, y, z;
+  OffsetSums sums;
   for (int r = row - reach; r <= row + reach; r += step) {
-    for (int c = column - reach; c <= column + reach; c += step) {
-      if (!image.grid().Contains(r, c) || !image.measured(r, c)) continue;
-      const Eigen::Vector3f offset = image.point(r, c) - centre;
-      if (offset.squaredNorm() > radius_sq) continue;
-      sum += offset;
-      products += offset * offset.transpose();
-      ++count;
+    int across = 0;
+    for (int c = column - reach; c <= column + reach; c += step, ++across) {
+      const std::size_t place = points.Place(r, c);
+      x[across] = *points.x(place) - centre.x();
+      y[across] = *points.y(place) - centre.y();
+      z[across] = *points.z(place) - centre.z();
+    }
+    std::fill_n(&x[across], kLanes, beyond);
+    std::fill_n(&y[across], kLanes, 0.0f);
+    std::fill_n(&z[across], kLanes, 0.0f);
+    for (int i = 0; i < across; i += kLanes) {
+      sums.Add(Eigen::Map<const Lanes>(&x[i]), Eigen::Map<const Lanes>(&y[i]),
+               Eigen::Map<const Lanes>(&z[i]), radius_sq);
     }
   }
-  if (count < kMinPoints) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f mean = sum / static_cast<float>(count);
+  if (sums.count.sum() < kMinPoints) return Eigen::Vector3f::Zero();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(products / static_cast<float>(count) - mean * mean.transpose());
+  solver.computeDirect(sums.Covariance());
   const Eigen::Vector3f normal = solver.eigenvectors().col(0).normalized();
   if (!normal.allFinite()) return Eigen::Vector3f::Zero();
   return normal.dot(centre) > 0.0f ? Eigen::Vector3f(-normal) : normal;
@@ -54,8 +103,26 @@ void PointColumns::Add(const Eigen::Vector3f& point) {
   z.push_back(point.z());
 }
 
+PointGrid::PointGrid(const RangeImage& image)
+    : stride_(static_cast<std::size_t>(image.width()) + 2 * kMargin) {
+  constexpr float kVeryFar = 1e18f;  // m; its square is still a float
+  for (std::vector<float>* const column : {&points_.x, &points_.y, &points_.z})
+    column->assign(stride_ * (static_cast<std::size_t>(image.height()) + 2 * kMargin), kVeryFar);
+  for (int row = 0; row < image.height(); ++row) {
+    for (int column = 0; column < image.width(); ++column) {
+      if (!image.measured(row, column)) continue;
+      const Eigen::Vector3f& point = image.point(row, column);
+      const std::size_t place = Place(row, column);
+      points_.x[place] = point.x();
+      points_.y[place] = point.y();
+      points_.z[place] = point.z();
+    }
+  }
+}
+
 Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution)
     : image_(image),
+      points_(image),
       azimuth_left_(static_cast<float>(image.grid().azimuth_left)),
       elevation_top_(static_cast<float>(image.grid().elevation_top)),
       pixels_per_radian_(image.grid().size() > 0 ? static_cast<float>(1.0 / image.grid().resolution)
@@ -72,7 +139,7 @@ Scene::Scene(const RangeImage& image, double normal_radius, const Execution& exe
         ranges_[pixel] = std::numeric_limits<float>::infinity();
       } else if (image_.measured(row, column)) {
         ranges_[pixel] = image_.range(row, column);
-        normals_[pixel] = NormalOf(image_, row, column, static_cast<float>(normal_radius));
+        normals_[pixel] = NormalOf(image_, points_, row, column, static_cast<float>(normal_radius));
       }
     }
   });
@@ -104,6 +171,26 @@ void Scene::Project(const PointColumns& points, const Eigen::Isometry3f& T_senso
     const int c = static_cast<int>(inside ? column : 0.0f);
     pixels[i] = inside ? r * width_ + c : -1;
   }
+}
+
+int Scene::NearestPixel(int pixel, const Eigen::Vector3f& p, float gate) const {
+  using Coordinates = Eigen::Map<const Lanes>;  // three lanes are used
+  const int row = pixel / width_, column = pixel % width_;
+  std::size_t place = points_.Place(row - 1, column - 1);
+  std::array<Lanes, 3> distances_sq;
+  for (Lanes& line : distances_sq) {
+    line = (Coordinates(points_.x(place)) - p.x()).square() +
+           (Coordinates(points_.y(place)) - p.y()).square() +
+           (Coordinates(points_.z(place)) - p.z()).square();
+    place += points_.stride();
+  }
+  // Without branches, which processors would guess wrong: any pixel may be the nearest.
+  const Lanes nearest = distances_sq[0].min(distances_sq[1]).min(distances_sq[2]);
+  const float smallest = std::min(std::min(nearest[0], nearest[1]), nearest[2]);
+  if (!(smallest < gate * gate)) return -1;
+  const int lane = (nearest[0] != smallest) * (1 + (nearest[1] != smallest));
+  const int line = (distances_sq[0][lane] != smallest) * (1 + (distances_sq[1][lane] != smallest));
+  return (row + line - 1) * width_ + column + lane - 1;
 }
 
 }  // namespace rimod

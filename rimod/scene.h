@@ -24,6 +24,28 @@ struct ProjectedPoints {
   std::vector<float> ranges;
 };
 
+// The points of a range image by coordinate with a margin around, for loops over neighbours that
+// ask nothing: what was not measured is very far away, and so is the margin.
+class PointGrid {
+ public:
+  static constexpr int kMargin = 6;  // pixels
+  explicit PointGrid(const RangeImage& image);
+
+  // Where a pixel's coordinates stand; up to kMargin pixels outside the image.
+  std::size_t Place(int row, int column) const {
+    return static_cast<std::size_t>(row + kMargin) * stride_ + (column + kMargin);
+  }
+  // From one row to the next.
+  std::size_t stride() const { return stride_; }
+  const float* x(std::size_t place) const { return points_.x.data() + place; }
+  const float* y(std::size_t place) const { return points_.y.data() + place; }
+  const float* z(std::size_t place) const { return points_.z.data() + place; }
+
+ private:
+  std::size_t stride_;
+  PointColumns points_;
+};
+
 // A range image made ready for many look-ups: ranges and normals in plain arrays and a projection
 // that is exact to a hundredth of a pixel but several times faster than Project().
 class Scene {
@@ -38,6 +60,10 @@ class Scene {
   void Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
                std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
 
+  // The measured pixel among the 3 x 3 around one whose point is nearest to p and nearer than gate
+  // (m); -1: none.
+  int NearestPixel(int pixel, const Eigen::Vector3f& p, float gate) const;
+
   // By pixel index. m; 0 never observed, infinite where there was no return.
   float range(int pixel) const { return ranges_[pixel]; }
   const Eigen::Vector3f& point(int pixel) const {
@@ -48,6 +74,7 @@ class Scene {
 
  private:
   RangeImage image_;
+  PointGrid points_;
   float azimuth_left_, elevation_top_, pixels_per_radian_;
   int width_, height_;
   std::vector<float> ranges_;

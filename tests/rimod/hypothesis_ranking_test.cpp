@@ -61,16 +61,21 @@ RankingModel ModelOf(const std::vector<Eigen::Vector3f>& points,
   return model;
 }
 
+bool Compare(const Scene& scene, const RankingModel& model, const RankingParams& params,
+             RankingFigures* figures) {
+  return ViewComparison(scene, kEpsilon, params)
+      .Compare(model, Eigen::Isometry3f::Identity(), figures);
+}
+
 // What is found at the pose where the model's points lie; nothing for a hopeless one.
 std::optional<RankingFigures> Compare(const RankingModel& model,
                                       const RankingParams& params = Params()) {
   RankingFigures figures;
-  if (!CompareViewPoints(Wall(), model, Eigen::Isometry3f::Identity(), kEpsilon, params, &figures))
-    return std::nullopt;
+  if (!Compare(Wall(), model, params, &figures)) return std::nullopt;
   return figures;
 }
 
-TEST(CompareViewPointsTest, PointsAtTheirPlaceCount) {
+TEST(ViewComparisonTest, PointsAtTheirPlaceCount) {
   EXPECT_NEAR(Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth)}))->at_place, 1.0,
               0.01);
   const RankingFigures half =
@@ -80,7 +85,7 @@ TEST(CompareViewPointsTest, PointsAtTheirPlaceCount) {
   EXPECT_NEAR(half.agreeing, 1.0, 0.05);  // the wall's normals
 }
 
-TEST(CompareViewPointsTest, OccludedAndUnknownPointsAreNotKnown) {
+TEST(ViewComparisonTest, OccludedAndUnknownPointsAreNotKnown) {
   const RankingFigures figures =
       *Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 1.0), PointAt(-5, 9, kDepth),
                         PointAt(5, 70, kDepth)}));
@@ -89,7 +94,7 @@ TEST(CompareViewPointsTest, OccludedAndUnknownPointsAreNotKnown) {
   EXPECT_EQ(figures.looked_through, 0.0f);
 }
 
-TEST(CompareViewPointsTest, LookedThroughPointsAreCounted) {
+TEST(ViewComparisonTest, LookedThroughPointsAreCounted) {
   // A beam without return went through, too.
   const RankingFigures figures =
       *Compare(ModelOf({PointAt(5, 5, kDepth), PointAt(5, 6, kDepth), PointAt(5, 9, kDepth - 0.5),
@@ -98,7 +103,7 @@ TEST(CompareViewPointsTest, LookedThroughPointsAreCounted) {
   EXPECT_NEAR(figures.known, 1.0, 1e-6);
 }
 
-TEST(CompareViewPointsTest, TheOutsideGoesOnOrJumps) {
+TEST(ViewComparisonTest, TheOutsideGoesOnOrJumps) {
   const std::vector<Eigen::Vector3f> points = {PointAt(5, 5, kDepth)};
   const RankingFigures figures =
       *Compare(ModelOf(points, {PointAt(8, 8, kDepth - 0.5), PointAt(9, 9, kDepth),
@@ -107,7 +112,7 @@ TEST(CompareViewPointsTest, TheOutsideGoesOnOrJumps) {
   EXPECT_NEAR(figures.goes_on, 0.25, 1e-6);
 }
 
-TEST(CompareViewPointsTest, HopelessOnesAreGivenUp) {
+TEST(ViewComparisonTest, HopelessOnesAreGivenUp) {
   std::vector<Eigen::Vector3f> points(4, PointAt(5, 5, kDepth - 1.0));  // none at its place
   points.insert(points.end(), 50, PointAt(5, 5, kDepth));
   EXPECT_FALSE(Compare(ModelOf(points)));
@@ -129,25 +134,47 @@ TEST(CompareViewPointsTest, HopelessOnesAreGivenUp) {
   EXPECT_FALSE(Compare(ModelOf(hidden), strict));
 }
 
-TEST(CompareViewPointsTest, WhatIsNotOfTheViewStays) {
+TEST(ViewComparisonTest, WhatIsNotOfTheViewStays) {
   RankingFigures figures;
   figures.votes = 7.0f;
   figures.tilt = 0.3f;
   figures.at_place = 100.0f;
-  ASSERT_TRUE(CompareViewPoints(Wall(), ModelOf({PointAt(5, 5, kDepth)}),
-                                Eigen::Isometry3f::Identity(), kEpsilon, Params(), &figures));
+  ASSERT_TRUE(Compare(Wall(), ModelOf({PointAt(5, 5, kDepth)}), Params(), &figures));
   EXPECT_EQ(figures.votes, 7.0f);
   EXPECT_EQ(figures.tilt, 0.3f);
   EXPECT_NEAR(figures.at_place, 1.0, 0.01);
 }
 
-TEST(CompareViewPointsTest, NothingToCompareIsHopeless) {
+TEST(ViewComparisonTest, OnePoseSaysNothingOfTheNext) {
+  const Scene wall = Wall();
+  const RankingParams params = Params();
+  ViewComparison comparison(wall, kEpsilon, params);
+  const auto compare = [&](const RankingModel& model, ViewComparison* with) {
+    RankingFigures figures;
+    EXPECT_TRUE(with->Compare(model, Eigen::Isometry3f::Identity(), &figures));
+    return figures;
+  };
+  const RankingModel large = ModelOf(std::vector<Eigen::Vector3f>(70, PointAt(5, 5, kDepth)),
+                                     {PointAt(8, 8, kDepth), PointAt(8, 8, kDepth)});
+  const RankingModel small =
+      ModelOf({PointAt(5, 5, kDepth), PointAt(5, 9, kDepth + 0.05), PointAt(6, 9, kDepth)});
+  compare(large, &comparison);
+  const RankingFigures after = compare(small, &comparison);
+  ViewComparison fresh(wall, kEpsilon, params);
+  const RankingFigures alone = compare(small, &fresh);
+  EXPECT_EQ(after.at_place, alone.at_place);
+  EXPECT_EQ(after.hits, alone.hits);
+  EXPECT_EQ(after.agreeing, alone.agreeing);
+  EXPECT_EQ(after.goes_on, 0.0f);
+  EXPECT_NEAR(alone.hits, 1.0, 1e-6);
+}
+
+TEST(ViewComparisonTest, NothingToCompareIsHopeless) {
   EXPECT_FALSE(Compare(RankingModel{}));
   EXPECT_FALSE(Compare(ModelOf({})));
   const Scene empty(RangeImage(), 0.05, Execution{});
   RankingFigures figures;
-  EXPECT_TRUE(CompareViewPoints(empty, ModelOf({PointAt(5, 5, kDepth)}),
-                                Eigen::Isometry3f::Identity(), kEpsilon, Params(), &figures));
+  EXPECT_TRUE(Compare(empty, ModelOf({PointAt(5, 5, kDepth)}), Params(), &figures));
   EXPECT_EQ(figures.known, 0.0f);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 
 namespace rimod {
@@ -11,17 +12,23 @@ TEST(SharedAmongModelsTest, ManyModelsShareTheWork) {
   PipelineParams params = DefaultParams(Method::kDefault);
   params.matching.max_matches = 20;
   params.ranking.full_models = 8;
+  params.ranking.min_screened_score = 0.003;
   params.ranking.refined = {40, 120, 0.005};
   params.ranking.num_models = 8;
   EXPECT_EQ(SharedAmongModels(params, 1).ranking.refined.most, 120);
   params.ranking.num_models = 32;
   const PipelineParams shared = SharedAmongModels(params, 1);
-  EXPECT_EQ(shared.ranking.refined.always, 18);  // 40 / 4^0.6, no fractions lost
-  EXPECT_EQ(shared.ranking.refined.most, 53);
+  EXPECT_EQ(shared.ranking.refined.always, 17);  // 40 / 4^0.65, no fractions lost
+  EXPECT_EQ(shared.ranking.refined.most, 49);
   EXPECT_EQ(shared.ranking.refined.min_score, 0.005);
   EXPECT_EQ(shared.matching.max_matches, 9);  // of 20
+  EXPECT_NEAR(shared.ranking.min_screened_score, 0.003 * std::pow(4.0, 0.65), 1e-9);
   params.ranking.num_models = 1'000'000;
+  EXPECT_EQ(SharedAmongModels(params, 1).matching.max_matches, 2);
+  EXPECT_EQ(SharedAmongModels(params, 1).ranking.min_screened_score, 1.0);
   EXPECT_EQ(SharedAmongModels(params, 1).ranking.judged.always, 1);
+  params.matching.max_matches = 1;  // as wanted
+  EXPECT_EQ(SharedAmongModels(params, 1).matching.max_matches, 1);
   params.ranking.num_models = 0;  // as many as the database has: one
   EXPECT_EQ(SharedAmongModels(params, 1).ranking.refined.most, 120);
 }

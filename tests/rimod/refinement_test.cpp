@@ -16,21 +16,23 @@ const Eigen::Isometry3d kPose = Placed(2.2, 0.1, -1.1, 0.5);
 const Eigen::Vector3d kSize(0.5, 0.4, 0.6);
 
 // A crate before a wall on a floor.
+Scene SceneWithCrate(const Eigen::Isometry3d& pose) {
+  World world;
+  world.planes = {{Eigen::Vector3d(4, 0, 0), -Eigen::Vector3d::UnitX()},
+                  {Eigen::Vector3d(0, 0, -1.1), Eigen::Vector3d::UnitZ()}};
+  BoxShape box;
+  box.T_local_box = pose * Eigen::Translation3d(0, 0, 0.3);
+  box.half_size = 0.5 * kSize;
+  world.boxes = {box};
+  RangeImageParams params;
+  params.resolution = 0.0069;
+  return Scene(
+      MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), BeamPattern{}), params), 0.05,
+      Execution{});
+}
+
 const Scene& CrateScene() {
-  static const Scene scene = [] {
-    World world;
-    world.planes = {{Eigen::Vector3d(4, 0, 0), -Eigen::Vector3d::UnitX()},
-                    {Eigen::Vector3d(0, 0, -1.1), Eigen::Vector3d::UnitZ()}};
-    BoxShape box;
-    box.T_local_box = kPose * Eigen::Translation3d(0, 0, 0.3);
-    box.half_size = 0.5 * kSize;
-    world.boxes = {box};
-    RangeImageParams params;
-    params.resolution = 0.0069;
-    return Scene(
-        MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), BeamPattern{}), params),
-        0.05, Execution{});
-  }();
+  static const Scene scene = SceneWithCrate(kPose);
   return scene;
 }
 
@@ -78,6 +80,34 @@ TEST(RefinePoseTest, StrongDampingOfTheTiltKeepsItUpright) {
   schedule.tilt_damping = 1000.0;
   const double stiff = Refine(start, schedule).linear()(2, 2);
   EXPECT_NEAR(stiff, std::cos(0.1), 1e-3);
+}
+
+// A pose that is turned by an angle (rad) about the object's x-axis.
+Eigen::Isometry3d Leaning(Eigen::Isometry3d pose, double angle) {
+  pose.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()));
+  return pose;
+}
+
+TEST(RefinePoseTest, WhatLeansALittleIsUpright) {
+  RefinementSchedule schedule = Schedule(10, 0.001);
+  schedule.tilt_damping = 1000.0;  // so that it leans in the end as at first
+  EXPECT_LT(Refine(Leaning(kPose, 0.04), schedule).linear()(2, 2), 0.9995);
+  schedule.upright_tilt = 0.05;
+  EXPECT_LT(Refine(Leaning(kPose, 0.06), schedule).linear()(2, 2), 0.9985);
+  for (const double angle : {-0.04, 0.0, 0.04}) {
+    const Eigen::Isometry3d refined = Refine(Leaning(kPose, angle), schedule);
+    EXPECT_NEAR(refined.linear()(2, 2), 1.0, 1e-6) << angle;
+    EXPECT_TRUE(PosesNear(refined, kPose, 0.01, 0.02)) << angle;
+  }
+}
+
+TEST(RefinePoseTest, WhatReallyLeansGoesOnLeaning) {
+  const Eigen::Isometry3d leaning = Leaning(kPose, 0.12);
+  const Scene scene = SceneWithCrate(leaning);
+  RefinementSchedule schedule = Schedule(15, 0.001);
+  schedule.upright_tilt = 0.05;
+  const Eigen::Isometry3f refined = RefinePose(scene, Crate(), kPose.cast<float>(), schedule);
+  EXPECT_TRUE(PosesNear(refined.cast<double>(), leaning, 0.02, 0.04));
 }
 
 TEST(RefinePoseTest, NothingToPairLeavesThePoseAsItIs) {

@@ -119,6 +119,49 @@ TEST(SceneTest, WhatIsNoPointIsOutside) {
   EXPECT_EQ(Projected(empty, {{1, 0, 0}}, pose).pixels[0], -1);
 }
 
+TEST(SceneTest, TheNearestPixelIsThatOfTheNine) {
+  RandomValues random(6);
+  const int width = 30, height = 20;
+  const RangeImage image = random.AnImage(width, height);
+  const Scene scene(image, 0.1, Execution{});
+  int found = 0, at_the_edge = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const int row = random.Int(0, height - 1), column = random.Int(0, width - 1);
+    const Eigen::Vector3f p = image.point(row, column) + random.Vector(1.0).cast<float>();
+    const float gate = static_cast<float>(random.Between(0.05, 30.0));
+    int expected = -1;
+    float nearest = gate;
+    for (int r = row - 1; r <= row + 1; ++r) {
+      for (int c = column - 1; c <= column + 1; ++c) {
+        if (!image.grid().Contains(r, c) || !image.measured(r, c)) continue;
+        const float distance = (image.point(r, c) - p).norm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        expected = r * width + c;
+      }
+    }
+    ASSERT_EQ(scene.NearestPixel(row * width + column, p, gate), expected);
+    found += expected >= 0;
+    at_the_edge += expected >= 0 && (row == 0 || column == 0 || row == height - 1);
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_LT(found, 19000);
+  EXPECT_GT(at_the_edge, 500);
+}
+
+TEST(SceneTest, NothingIsNearestWhereNothingIsMeasured) {
+  RangeImage image(Grid(5, 5, 0.0, 0.0), Eigen::Isometry3d::Identity());
+  image.SetNoReturn(2, 2);
+  const Scene scene(image, 0.1, Execution{});
+  EXPECT_EQ(scene.NearestPixel(12, Eigen::Vector3f(1, 0, 0), 1e6f), -1);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  image.SetMeasured(2, 2, {1600, 0, 0});
+  const Scene one(image, 0.1, Execution{});
+  EXPECT_EQ(one.NearestPixel(0, image.point(2, 2), 1.0f), -1);
+  EXPECT_EQ(one.NearestPixel(6, image.point(2, 2), 1.0f), 12);
+  EXPECT_EQ(one.NearestPixel(12, Eigen::Vector3f(nan, 0, 0), 1.0f), -1);
+}
+
 TEST(SceneTest, NormalsAreThoseOfTheSurfaces) {
   World world;
   const Eigen::Vector3d wall_normal = Eigen::Vector3d(-1, 0.3, 0.2).normalized();
