@@ -26,6 +26,7 @@ constexpr int kProposedOfRefined = 3;
 
 struct Options {
   std::string models, config, out;
+  CloudChannels clouds;
   std::vector<std::string> scans;
 };
 
@@ -93,9 +94,13 @@ int Run(const Options& options) {
   ThreadPool pool(0);
   const ModelDatabase database(std::move(folder.models), params, pool.MakeExecution());
   FigureWriter writer(options.out);
+  ScanSourceParams source;
+  source.sweep = params.sweep;
+  source.cloud = params.cloud;
+  source.cloud_channels = options.clouds;
   bool good = true;
   for (const std::string& path : options.scans) {
-    const ScanSourceReport report = ReadScans(path, params.sweep, [&](const NamedScan& scan) {
+    const ScanSourceReport report = ReadScans(path, source, [&](const NamedScan& scan) {
       DumpScan(scan, database, params, pool.MakeExecution(), &writer);
     });
     for (const std::string& error : report.errors) std::cerr << error << '\n';
@@ -113,6 +118,10 @@ int main(int argc, char** argv) {
   app.add_option("--models", options.models, "Folder with .rimod files")->required();
   app.add_option("--config", options.config, "Configuration file");
   app.add_option("--out", options.out, "CSV file to write")->required();
+  CLI::Option* const cloud =
+      app.add_option("--cloud-channel", options.clouds.clouds, "Logs' scans are its point clouds");
+  app.add_option("--cloud-pose-channel", options.clouds.poses, "Poses of the clouds' carrier")
+      ->needs(cloud);
   app.add_option("scans", options.scans, "Scan files or LCM logs")->required();
   try {
     app.parse(argc, argv);
