@@ -1,11 +1,9 @@
 #include "rimod/default_method.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "rimod/distinct_poses.h"
-#include "rimod/feature_support.h"
 #include "rimod/judgement.h"
 #include "rimod/matching.h"
 #include "rimod/model_work.h"
@@ -67,7 +65,7 @@ bool SetFigures(const Scene& scene, const ModelDatabase& database, ViewCompariso
   const Eigen::Isometry3f& pose = hypothesis->T_sensor_object;
   if (!comparison->Compare(database.ranking_models()[hypothesis->model], pose, &figures))
     return false;
-  figures.tilt = std::acos(std::clamp(pose.linear()(2, 2), -1.0f, 1.0f));
+  figures.tilt = TiltOf(pose);
   figures.pixels_across = static_cast<float>(
       PixelsAcross(scene, database.models()[hypothesis->model], pose.cast<double>()));
   return true;
@@ -217,44 +215,6 @@ std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesi
   return BestOfEachModel(RankEachModel(OfEachModel(hypotheses, database), database,
                                        ranking.refined.most, kRankWeights, ranking, execution),
                          ranking.judged);
-}
-
-std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
-                                             const ModelMatches& matches,
-                                             const std::vector<Hypothesis>& ranked,
-                                             const ModelDatabase& database,
-                                             const PipelineParams& params,
-                                             const Execution& execution) {
-  const StageScope stage(execution, "validation");
-  const FeatureSupportCounter support(features, matches, database);
-  std::vector<JudgedCandidate> judged(ranked.size());
-  const auto judge = [&](const SurfaceSample& sample, const RefinementSchedule& schedule,
-                         const Eigen::Isometry3f& T_sensor_object, JudgedCandidate* result) {
-    result->candidate.T_sensor_object =
-        RefinePose(scene, sample, T_sensor_object, schedule).cast<double>();
-    result->evidence = GatherEvidence(scene, database.judged_models()[result->candidate.model],
-                                      result->candidate.T_sensor_object, params.evidence);
-    result->support = support.Count(result->candidate);
-    result->candidate.score = Probability(
-        kJudgementTrees, JudgementFigures(result->evidence, result->figures, result->support));
-  };
-  execution.parallel_for(ranked.size(), [&](std::size_t i) {
-    JudgedCandidate& result = judged[i];
-    result.candidate.model = ranked[i].model;
-    result.rank_score = ranked[i].score;
-    result.figures = ranked[i].figures;
-    const JudgedModel& model = database.judged_models()[result.candidate.model];
-    judge(model.coarse_sample(), params.refinement.BeforeScreening(), ranked[i].T_sensor_object,
-          &result);
-    if (result.candidate.score < params.ranking.min_screened_score) return;
-    judge(model.sample(), params.refinement.BeforeJudging(),
-          result.candidate.T_sensor_object.cast<float>(), &result);
-  });
-  std::stable_sort(judged.begin(), judged.end(),
-                   [](const JudgedCandidate& a, const JudgedCandidate& b) {
-                     return a.candidate.score > b.candidate.score;
-                   });
-  return judged;
 }
 
 JudgedScan ToJudgedScan(const Scene& scene, const std::vector<JudgedCandidate>& judged,

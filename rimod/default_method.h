@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "rimod/candidate_choice.h"
+#include "rimod/candidate_judging.h"
 #include "rimod/candidates.h"
 #include "rimod/execution.h"
-#include "rimod/feature_support.h"
 #include "rimod/features.h"
 #include "rimod/model_database.h"
 #include "rimod/params.h"
@@ -30,13 +30,6 @@ JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
 ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& database,
                            const PipelineParams& params, const Execution& execution);
 
-struct Hypothesis {
-  int model = 0;  // in the database
-  Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
-  double score = 0.0;
-  RankingFigures figures;
-};
-
 // A pose or two from every correspondence, scored as they are, without hopeless ones: of each model
 // the best of different poses, by the quota of refinement. Model after model, best first.
 // num_found: before any was left out. Stages hypotheses, scoring.
@@ -52,24 +45,6 @@ std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& 
 std::vector<Hypothesis> RankHypotheses(const Scene& scene, std::vector<Hypothesis> hypotheses,
                                        const ModelDatabase& database, const PipelineParams& params,
                                        const Execution& execution);
-
-// Everything that judging a candidate found.
-struct JudgedCandidate {
-  Candidate candidate;      // score: probability that it is right
-  double rank_score = 0.0;  // the hypothesis's
-  RankingFigures figures;
-  FeatureSupport support;
-  Evidence evidence;
-};
-
-// The ranked candidates refined in all degrees of freedom and judged, best first, ties by model.
-// Stage validation.
-std::vector<JudgedCandidate> JudgeCandidates(const Scene& scene, const FeatureSet& features,
-                                             const ModelMatches& matches,
-                                             const std::vector<Hypothesis>& ranked,
-                                             const ModelDatabase& database,
-                                             const PipelineParams& params,
-                                             const Execution& execution);
 
 // As the choice wants them. num_found: hypotheses before any was left out.
 JudgedScan ToJudgedScan(const Scene& scene, const std::vector<JudgedCandidate>& judged,

@@ -168,9 +168,6 @@ class Refiner {
     return true;
   }
 
-  // Of the object's z-axis, rad.
-  float Tilt() const { return std::acos(std::clamp(T_.linear()(2, 2), -1.0f, 1.0f)); }
-
   void StandUpright() {
     Turn(Eigen::Quaternionf::FromTwoVectors(T_.linear().col(2), Eigen::Vector3f::UnitZ())
              .toRotationMatrix(),
@@ -209,19 +206,19 @@ void RefinementParams::Validate() const {
   CheckWithin("refinement damping", damping, 1e-6, 10.0);
   CheckWithin("refinement tilt_damping", tilt_damping, 1e-6, 1e6);
   CheckWithin("refinement upright_tilt", upright_tilt, 0.0, 0.5);
+  CheckWithin("refinement min_leaning_odds", min_leaning_odds, 1.0, 1e9);
 }
 
 RefinementSchedule RefinementParams::BeforeRanking() const {
-  return {coarse_iterations, coarse_gate, fine_gate, damping, tilt_damping, 0.0};
+  return {coarse_iterations, coarse_gate, fine_gate, damping, tilt_damping};
 }
 
 RefinementSchedule RefinementParams::BeforeScreening() const {
-  return {screening_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping, 0.0};
+  return {screening_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
 }
 
 RefinementSchedule RefinementParams::BeforeJudging() const {
-  return {fine_iterations, judged_first_gate, judged_last_gate,
-          damping,         tilt_damping,      upright_tilt};
+  return {fine_iterations, judged_first_gate, judged_last_gate, damping, tilt_damping};
 }
 
 Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
@@ -236,13 +233,24 @@ Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
         schedule.first_gate * std::pow(schedule.last_gate / schedule.first_gate, progress);
     if (!refiner.Step(static_cast<float>(gate), schedule.damping, schedule.tilt_damping)) break;
   }
-  if (!(static_cast<double>(refiner.Tilt()) < schedule.upright_tilt)) return refiner.pose();
+  return refiner.pose();
+}
+
+Eigen::Isometry3f StandUpright(const Scene& scene, const SurfaceSample& surface,
+                               const Eigen::Isometry3f& T_sensor_object,
+                               const RefinementSchedule& schedule) {
+  if (surface.points.empty()) return T_sensor_object;
+  Refiner refiner(scene, surface, T_sensor_object);
   refiner.StandUpright();
   constexpr int kUprightIterations = 3;
   constexpr double kNoTilt = 1e6;  // damping
   for (int i = 0; i < kUprightIterations; ++i)
     if (!refiner.Step(static_cast<float>(schedule.last_gate), schedule.damping, kNoTilt)) break;
   return refiner.pose();
+}
+
+float TiltOf(const Eigen::Isometry3f& T_sensor_object) {
+  return std::acos(std::clamp(T_sensor_object.linear()(2, 2), -1.0f, 1.0f));
 }
 
 }  // namespace rimod

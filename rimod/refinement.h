@@ -20,7 +20,6 @@ struct RefinementSchedule {
   double last_gate = 0.05;     // m, .. and in the end; > 0
   double damping = 0.02;       // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;  // the same for the tilt from the vertical; > 0
-  double upright_tilt = 0.0;   // rad, what leans less in the end is upright; >= 0
 };
 
 struct RefinementParams {
@@ -33,8 +32,8 @@ struct RefinementParams {
   double judged_last_gate = 0.03;   // m
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
-  // rad, what leans less before it is judged is taken to stand upright; 0 = nothing .. 0.5
-  double upright_tilt = 0.044;
+  double upright_tilt = 0.044;      // rad, what leans less is judged upright; 0 = nothing .. 0.5
+  double min_leaning_odds = 50.0;   // .. unless leaning it is so many times as probable; >= 1
   void Validate() const;
   RefinementSchedule BeforeRanking() const;
   RefinementSchedule BeforeScreening() const;
@@ -43,12 +42,18 @@ struct RefinementParams {
 
 // Projective point-to-plane ICP: each surface point facing the sensor is paired with the nearest
 // scene point of the 3 x 3 pixels where it falls; the pose moves along the surface's normals. The
-// gate shrinks from first_gate to last_gate over the iterations. All six degrees of freedom; then,
-// if the pose leans less than upright_tilt, it is turned upright about the surface's middle and
-// three more iterations at the last gate keep it so: most things stand, and a tilt of a degree is
-// what noise makes of them.
+// gate shrinks from first_gate to last_gate over the iterations. All six degrees of freedom.
 Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
                              const Eigen::Isometry3f& T_sensor_object,
                              const RefinementSchedule& schedule);
+
+// The pose turned upright about the surface's middle, then heading and place refined anew at the
+// schedule's last gate: most things stand, and a tilt of a degree is what noise makes of them.
+Eigen::Isometry3f StandUpright(const Scene& scene, const SurfaceSample& surface,
+                               const Eigen::Isometry3f& T_sensor_object,
+                               const RefinementSchedule& schedule);
+
+// Between the object's z-axis and the sensor's, rad.
+float TiltOf(const Eigen::Isometry3f& T_sensor_object);
 
 }  // namespace rimod

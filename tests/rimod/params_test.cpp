@@ -115,6 +115,7 @@ const std::vector<RealField>& RealFields() {
       REAL(refinement, damping, 0.0, -0.1),
       REAL(refinement, tilt_damping, 0.0, -0.1),
       REAL(refinement, upright_tilt, -0.1, 0.6),
+      REAL(refinement, min_leaning_odds, 0.9, 1e10),
       REAL(evidence, normal_radius, 0.0, -0.1),
       REAL(evidence, depth_tolerance, 0.0, -0.1),
       REAL(evidence, slope_tolerance, -0.1),

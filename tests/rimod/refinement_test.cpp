@@ -88,25 +88,27 @@ Eigen::Isometry3d Leaning(Eigen::Isometry3d pose, double angle) {
   return pose;
 }
 
-TEST(RefinePoseTest, WhatLeansALittleIsUpright) {
-  RefinementSchedule schedule = Schedule(10, 0.001);
-  schedule.tilt_damping = 1000.0;  // so that it leans in the end as at first
-  EXPECT_LT(Refine(Leaning(kPose, 0.04), schedule).linear()(2, 2), 0.9995);
-  schedule.upright_tilt = 0.05;
-  EXPECT_LT(Refine(Leaning(kPose, 0.06), schedule).linear()(2, 2), 0.9985);
-  for (const double angle : {-0.04, 0.0, 0.04}) {
-    const Eigen::Isometry3d refined = Refine(Leaning(kPose, angle), schedule);
-    EXPECT_NEAR(refined.linear()(2, 2), 1.0, 1e-6) << angle;
-    EXPECT_TRUE(PosesNear(refined, kPose, 0.01, 0.02)) << angle;
+TEST(StandUprightTest, TurnsUprightAndFindsHeadingAndPlace) {
+  for (const double angle : {-0.2, -0.04, 0.0, 0.04}) {
+    const Eigen::Isometry3f leaning = Leaning(kPose, angle).cast<float>();
+    const Eigen::Isometry3f upright =
+        StandUpright(CrateScene(), Crate(), leaning, Schedule(1, 0.001));
+    EXPECT_NEAR(TiltOf(leaning), std::abs(angle), 1e-3);
+    EXPECT_LT(TiltOf(upright), 1e-3) << angle;
+    if (std::abs(angle) < 0.1) {
+      EXPECT_TRUE(PosesNear(upright.cast<double>(), kPose, 0.01, 0.02)) << angle;
+    }
   }
+  const Eigen::Isometry3f pose = Leaning(kPose, 0.04).cast<float>();
+  EXPECT_EQ(StandUpright(CrateScene(), SurfaceSample{}, pose, Schedule(1, 0.001)).matrix(),
+            pose.matrix());
 }
 
-TEST(RefinePoseTest, WhatReallyLeansGoesOnLeaning) {
+TEST(RefinePoseTest, WhatLeansIsFoundLeaning) {
   const Eigen::Isometry3d leaning = Leaning(kPose, 0.12);
   const Scene scene = SceneWithCrate(leaning);
-  RefinementSchedule schedule = Schedule(15, 0.001);
-  schedule.upright_tilt = 0.05;
-  const Eigen::Isometry3f refined = RefinePose(scene, Crate(), kPose.cast<float>(), schedule);
+  const Eigen::Isometry3f refined =
+      RefinePose(scene, Crate(), kPose.cast<float>(), Schedule(15, 0.001));
   EXPECT_TRUE(PosesNear(refined.cast<double>(), leaning, 0.02, 0.04));
 }
 
