@@ -2,6 +2,7 @@
 """Learn the default method's weights from figures of labelled scans.
 
 usage: train_judgement.py --models MODELS_DIR --data LABELS.json=FIGURES.csv[@WEIGHT] [--data ..] [--judgement-only] [--out FILE.cpp]
+                          [--held-out FOLDER]
        train_judgement.py --models MODELS_DIR --data .. --folds 5
 
 MODELS_DIR has <class>/model.json with box and symmetry, LABELS.json and model.json are in the format of
@@ -14,11 +15,13 @@ is right within 10 cm and 15 degrees of an object of its class (modulo its symme
 between are left out. With --judgement-only the two regressions stay as OUT has them. The trees' probability is calibrated on what held-out scans of the sets without @WEIGHT would
 have as detections. With
 --folds the scans are split and the log loss and the average precision over the held-out candidates are printed,
-nothing is written.
+nothing is written. With --held-out the detections that trees learnt from the other four fifths of the scans would make, from 2 %
+on, are written as rimod-detect writes its own: FOLDER/SET.jsonl for each set without @WEIGHT, SET the folder of its labels.
 """
 import argparse
 import json
 import math
+import pathlib
 import sys
 
 import numpy as np
@@ -120,6 +123,11 @@ class Logistic:
         return 1 / (1 + np.exp(-np.clip(((X - self.mean) / self.scale) @ self.weights + self.bias, -40, 40)))
 
 
+def logits(p):
+    p = np.clip(p, 1e-6, 1 - 1e-6)
+    return np.log(p / (1 - p))
+
+
 class Trees:
     """Gradient boosting for the judgement; the settings keep the leaves well filled."""
 
@@ -135,9 +143,11 @@ class Trees:
 
     def calibrate(self, p, right):
         """Platt's scaling: makes probabilities p held out mean what they say."""
-        logit = np.log(np.clip(p, 1e-6, 1 - 1e-6) / np.clip(1 - p, 1e-6, 1 - 1e-6))
-        mean, scale, w, bias = fit(logit[:, None], right.astype(float), np.ones(len(p)), 0.01)
+        mean, scale, w, bias = fit(logits(p)[:, None], right.astype(float), np.ones(len(p)), 0.01)
         self.slope, self.shift = float(w[0] / scale[0]), float(bias - w[0] * mean[0] / scale[0])
+
+    def calibrated(self, p):
+        return 1 / (1 + np.exp(-(self.slope * logits(p) + self.shift)))
 
     def nodes(self):
         """bias, roots, nodes (feature, threshold, left, right, value)"""
@@ -208,12 +218,25 @@ def chosen(p, groups, names, centres, models, least=0.02):
             break
         diameter = models[names[i]].diameter
         near = any(np.linalg.norm(centres[i] - centres[k]) <
-                   (0.4 if names[i] == names[k] else 0.3) * min(diameter, models[names[k]].diameter)
+                   (0.4 if names[i] == names[k] else 0.2) * min(diameter, models[names[k]].diameter)
                    for k in kept.get(groups[i], []))
         if not near:
             kept.setdefault(groups[i], []).append(i)
             result.append(i)
     return np.array(result)
+
+
+def write_detections(folder, sets, p, detections, groups, names, poses):
+    """One JSON line a detection, a file for each {number: name} of sets."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = {number: [] for number in sets}
+    for i in detections:
+        number, scan = groups[i].split('/', 1)
+        if int(number) in lines:
+            lines[int(number)].append(json.dumps({'scan': scan, 'class': str(names[i]), 'pose': [float(x) for x in poses[i]],
+                                                  'score': float(p[i])}))
+    for number, name in sets.items():
+        (folder / f'{name}.jsonl').write_text(''.join(line + '\n' for line in lines[number]))
 
 
 def main():
@@ -223,25 +246,28 @@ def main():
     parser.add_argument('--out')
     parser.add_argument('--folds', type=int)
     parser.add_argument('--judgement-only', action='store_true')
+    parser.add_argument('--held-out', type=pathlib.Path)
     parser.add_argument('--ridge', type=float, default=1.0)
     a = parser.parse_args()
-    import pathlib
     models = {p.parent.name: Model(p) for folder in a.models for p in pathlib.Path(folder).glob('*/model.json')}
     kinds = ('J',) if a.judgement_only else tuple(RIGHT)
     data = {kind: [] for kind in kinds}
+    sets = {}  # those without a weight: {number: folder}
     for n, pair in enumerate(a.data):
         labels_path, csv_path = pair.split('=')
         csv_path, _, set_weight = csv_path.partition('@')
         labels = json.load(open(labels_path))
+        if not set_weight:
+            sets[n] = pathlib.Path(labels_path).resolve().parent.name
         for kind, (scans, names, poses, figures) in read_figures(csv_path, kinds).items():
             y, weight = label(labels, scans, names, poses, models, kind)
             centres = poses[:, :3] + np.einsum('nij,nj->ni', rotations(poses[:, 3:]), np.array([models[n].centre for n in names]))
             groups = np.array([f'{n}/{s}' for s in scans])
             data[kind].append((figures, y, weight * float(set_weight or 1), groups, np.array(names), centres,
-                               np.full(len(y), not set_weight)))
+                               np.full(len(y), not set_weight), poses))
     learnt = {}
     for kind, parts in data.items():
-        X, y, weight, groups, names, centres, own = (np.concatenate([part[i] for part in parts]) for i in range(7))
+        X, y, weight, groups, names, centres, own, poses = (np.concatenate([part[i] for part in parts]) for i in range(8))
         print(f'{kind}: {len(y)} candidates, {(y == 1).sum()} right, {(y == 0).sum()} wrong', file=sys.stderr)
         known = y >= 0
         learn = Trees if kind == 'J' else lambda X, y, w: Logistic(X, y, w, a.ridge)
@@ -255,6 +281,8 @@ def main():
             p = held_out(learn, X, y, weight, groups, 5)
             detections = chosen(np.where(own, p, 0.0), groups, names, centres, models)
             learnt[kind].calibrate(p[detections], y[detections] != 0)
+            if a.held_out:
+                write_detections(a.held_out, sets, learnt[kind].calibrated(p), detections, groups, names, poses)
     if not a.folds:
         write(a.out, learnt)
 

@@ -204,7 +204,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"refinement", "judged_last_gate", &f.judged_last_gate, "m, .. and in the end; > 0"},
       {"refinement", "damping", &f.damping, "of the points' number, keeps what they do not determine; > 0"},
       {"refinement", "tilt_damping", &f.tilt_damping, "the same for the tilt from the vertical; > 0"},
-      {"refinement", "upright_tilt_deg", DegreesOf{&f.upright_tilt}, "what leans less before it is judged is judged upright; 0 = nothing .. 28"},
+      {"refinement", "upright_tilt_deg", DegreesOf{&f.upright_tilt}, "what leans less is judged upright, too, and counts as upright ..; 0 = nothing .. 28"},
       {"refinement", "min_leaning_odds", &f.min_leaning_odds, ".. unless leaning it is so many times as probable (odds); >= 1"},
 
       {"evidence", "normal_radius", &e.normal_radius, "m, a scene normal is that of the points this near; > 0"},

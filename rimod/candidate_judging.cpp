@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "rimod/evidence.h"
 #include "rimod/judgement.h"
 #include "rimod/refinement.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "rimod/candidates.h"
+#include "rimod/evidence.h"
 #include "rimod/execution.h"
 #include "rimod/feature_support.h"
 #include "rimod/features.h"
@@ -16,13 +16,6 @@ namespace rimod {
 
 // The last step before the choice: candidates are refined with their whole surface, the model is
 // rendered, and all the evidence for and against becomes one probability.
-
-struct Hypothesis {
-  int model = 0;  // in the database
-  Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
-  double score = 0.0;
-  RankingFigures figures;
-};
 
 // Everything that judging a candidate found.
 struct JudgedCandidate {

@@ -35,7 +35,8 @@ struct RankingParams {
   double second_min_share = 0.58;  // 0 .. 1
   double min_known = 0.15;         // of them with nothing in front; 0 .. 1
   // How much work goes into a model: with more than full_models of them it grows slower than their
-  // number, so that each gets less of the matches of a feature and of the quotas.
+  // number, so that each gets less of the matches of a feature and of the quotas, and a first look
+  // gives up more.
   int num_models = 0;     // models that share it; 0 = those of the database
   int full_models = 7;    // >= 1
   int max_scanned = 800;  // best of each model: among these different poses are looked for; >= 1
@@ -85,6 +86,14 @@ struct RankingFigures {
   float tilt = 0.0f;            // rad, of the object's z-axis
   float descriptor_distance = 0.0f;  // m, of the correspondence that it comes from
   float votes = 1.0f;                // hypotheses of the same pose, with itself
+};
+
+// A pose of a model that the default method considers.
+struct Hypothesis {
+  int model = 0;  // in the database
+  Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
+  double score = 0.0;
+  RankingFigures figures;
 };
 
 // Compares poses with one scene, one after the other; of use to one thread.

@@ -32,8 +32,9 @@ PipelineParams SharedAmongModels(const PipelineParams& params, int num_models) {
     *count = static_cast<int>(std::ceil(share * *count));
   shared.matching.max_matches =
       std::max(shared.matching.max_matches, std::min(kFewestMatches, params.matching.max_matches));
-  // The more models, the less probable each candidate is.
-  ranking.min_screened_score = std::min(ranking.min_screened_score / share, 1.0);
+  // The more models, the less probable each candidate is; but what may be reported is looked at.
+  const double most = std::max(ranking.min_screened_score, params.choice.min_probability);
+  ranking.min_screened_score = std::min(ranking.min_screened_score / share, most);
   return shared;
 }
 

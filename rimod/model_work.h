@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "rimod/default_method.h"
+#include "rimod/hypothesis_ranking.h"
 #include "rimod/params.h"
 
 namespace rimod {

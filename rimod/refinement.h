@@ -32,7 +32,7 @@ struct RefinementParams {
   double judged_last_gate = 0.03;   // m
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
-  double upright_tilt = 0.044;      // rad, what leans less is judged upright; 0 = nothing .. 0.5
+  double upright_tilt = 0.044;      // rad, what leans less may be upright; 0 = nothing .. 0.5
   double min_leaning_odds = 50.0;   // .. unless leaning it is so many times as probable; >= 1
   void Validate() const;
   RefinementSchedule BeforeRanking() const;
@@ -48,12 +48,13 @@ Eigen::Isometry3f RefinePose(const Scene& scene, const SurfaceSample& surface,
                              const RefinementSchedule& schedule);
 
 // The pose turned upright about the surface's middle, then heading and place refined anew at the
-// schedule's last gate: most things stand, and a tilt of a degree is what noise makes of them.
+// schedule's last gate: most things stand, and a tilt of a degree is what noise makes of them. As
+// it was where the surface has no points.
 Eigen::Isometry3f StandUpright(const Scene& scene, const SurfaceSample& surface,
                                const Eigen::Isometry3f& T_sensor_object,
                                const RefinementSchedule& schedule);
 
-// Between the object's z-axis and the sensor's, rad.
+// Between the object's z-axis and that of the level sensor frame, rad.
 float TiltOf(const Eigen::Isometry3f& T_sensor_object);
 
 }  // namespace rimod

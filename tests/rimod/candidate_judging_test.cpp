@@ -4,6 +4,7 @@
 
 #include "rimod/default_method.h"
 #include "rimod/feature_extraction.h"
+#include "rimod/judgement.h"
 #include "rimod/model_building.h"
 #include "rimod/refinement.h"
 #include "tests/support/executions.h"
@@ -90,14 +91,17 @@ TEST(CandidateJudgingTest, UprightUnlessLeaningIsFarMoreProbable) {
 
 TEST(CandidateJudgingTest, WhatIsToldIsOfThePoseThatIsTold) {
   const LeaningArmchair leaning(kTilt);
-  const JudgedCandidate as_refined = leaning.JudgeOne(0.0, 1.0);
-  const JudgedCandidate chosen = leaning.JudgeOne(kLimit, 1.0);
-  EXPECT_EQ(chosen.candidate.score, as_refined.candidate.score);
-  EXPECT_EQ(chosen.candidate.T_sensor_object.matrix(),
-            as_refined.candidate.T_sensor_object.matrix());
-  EXPECT_EQ(chosen.evidence.values, as_refined.evidence.values);
-  EXPECT_EQ(chosen.evidence.explained, as_refined.evidence.explained);
-  EXPECT_EQ(chosen.support.matching, as_refined.support.matching);
+  const Scene scene(leaning.image, Params().evidence.normal_radius, Execution{});
+  for (const double min_leaning_odds : {1.0, 1e9}) {
+    const JudgedCandidate told = leaning.JudgeOne(kLimit, min_leaning_odds);
+    EXPECT_EQ(TiltOf(told) < 1e-3, min_leaning_odds > 1.0);
+    const Evidence evidence = GatherEvidence(scene, ArmchairDatabase().judged_models()[0],
+                                             told.candidate.T_sensor_object, Params().evidence);
+    EXPECT_EQ(told.evidence.values, evidence.values);
+    EXPECT_EQ(told.evidence.explained, evidence.explained);
+    EXPECT_EQ(told.candidate.score,
+              Probability(kJudgementTrees, JudgementFigures(evidence, told.figures, told.support)));
+  }
 }
 
 TEST(CandidateJudgingTest, WhatLeansMoreIsNotTurned) {
@@ -105,20 +109,40 @@ TEST(CandidateJudgingTest, WhatLeansMoreIsNotTurned) {
   EXPECT_NEAR(TiltOf(leaning.JudgeOne(kLimit, 1e9)), 0.2, 0.02);
 }
 
-TEST(CandidateJudgingTest, WhatAFirstLookGivesUpIsNotRefinedFurther) {
+TEST(CandidateJudgingTest, WhatAFirstLookGivesUpStaysAsItSawIt) {
   const LeaningArmchair standing(0.0);
   PipelineParams params = Params();
-  Eigen::Isometry3d wrong = standing.pose;
-  wrong.pretranslate(Eigen::Vector3d(0.0, -1.2, 0.0));
-  const double patient = standing.Judge({standing.pose, wrong}, params).front().candidate.score;
-  params.ranking.min_screened_score = 0.2;
-  params.refinement.fine_iterations = 0;
-  const std::vector<JudgedCandidate> judged =
-      standing.Judge({wrong, standing.pose}, params, OnThreads(2));
-  ASSERT_EQ(judged.size(), 2u);
-  EXPECT_GT(patient, 0.2);
-  EXPECT_TRUE(PosesNear(judged[0].candidate.T_sensor_object, standing.pose, 0.05, 0.05));
-  EXPECT_LT(judged[1].candidate.score, 0.2);
+  Eigen::Isometry3d start = standing.pose;
+  start.pretranslate(Eigen::Vector3d(0.02, 0.03, 0.0));
+  const JudgedCandidate closely = standing.Judge({start}, params).front();
+  params.ranking.min_screened_score = 1.0;
+  const JudgedCandidate given_up = standing.Judge({start}, params).front();
+  const Scene scene(standing.image, params.evidence.normal_radius, Execution{});
+  const Eigen::Isometry3f first =
+      RefinePose(scene, ArmchairDatabase().judged_models()[0].coarse_sample(), start.cast<float>(),
+                 params.refinement.BeforeScreening());
+  EXPECT_EQ(given_up.candidate.T_sensor_object.matrix(), first.cast<double>().matrix());
+  EXPECT_NE(closely.candidate.T_sensor_object.matrix(),
+            given_up.candidate.T_sensor_object.matrix());
+}
+
+TEST(CandidateJudgingTest, ThreadsAndOrderDoNotMatter) {
+  const LeaningArmchair leaning(0.03);
+  std::vector<Eigen::Isometry3d> poses(12, leaning.pose);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    poses[i].pretranslate(Eigen::Vector3d(0.0, 0.05 * static_cast<double>(i), 0.0));
+  const std::vector<JudgedCandidate> alone = leaning.Judge(poses, Params());
+  ASSERT_EQ(alone.size(), poses.size());
+  EXPECT_GT(alone.front().candidate.score, alone.back().candidate.score);
+  for (const Execution& execution : {OnThreads(4), Backwards()}) {
+    const std::vector<JudgedCandidate> other = leaning.Judge(poses, Params(), execution);
+    ASSERT_EQ(other.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      EXPECT_EQ(other[i].candidate.score, alone[i].candidate.score);
+      EXPECT_EQ(other[i].candidate.T_sensor_object.matrix(),
+                alone[i].candidate.T_sensor_object.matrix());
+    }
+  }
 }
 
 }  // namespace

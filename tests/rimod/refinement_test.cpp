@@ -90,7 +90,10 @@ Eigen::Isometry3d Leaning(Eigen::Isometry3d pose, double angle) {
 
 TEST(StandUprightTest, TurnsUprightAndFindsHeadingAndPlace) {
   for (const double angle : {-0.2, -0.04, 0.0, 0.04}) {
-    const Eigen::Isometry3f leaning = Leaning(kPose, angle).cast<float>();
+    Eigen::Isometry3d start = kPose;
+    start.pretranslate(Eigen::Vector3d(0.01, -0.02, 0.01));
+    start.rotate(Eigen::AngleAxisd(0.04, Eigen::Vector3d::UnitZ()));
+    const Eigen::Isometry3f leaning = Leaning(start, angle).cast<float>();
     const Eigen::Isometry3f upright =
         StandUpright(CrateScene(), Crate(), leaning, Schedule(1, 0.001));
     EXPECT_NEAR(TiltOf(leaning), std::abs(angle), 1e-3);
