@@ -27,6 +27,23 @@ import sys
 import numpy as np
 
 SYMMETRY = {'none': 1, 'yaw2': 2, 'yaw4': 4, 'yaw_continuous': 0}
+
+# What candidates are judged by, in the order of JudgementFigures (rimod/judgement.cpp), and which way each may only move the
+# probability when all others stay as they are: +1 up, -1 down, 0 either. Unbound trees learn accidents of the scans.
+JUDGEMENT_FIGURES = {
+    'matched': 1, 'nearly_matched': 0, 'seen_through': -1, 'occluded': 0, 'no_return': 0, 'matched_of_known': 1, 'residual': -1,
+    'normal_agreement': 1, 'silhouette_jump': 0, 'silhouette_continues': -1, 'silhouette_occluded': 0, 'silhouette_known': 1,
+    'unexplained': -1, 'supported': 1, 'log_matched_pixels': 0, 'log_rendered_pixels': 0, 'distance': 0, 'tilt': 0,
+    'second_normal': 0, 'third_normal': 0, 'relief': 0, 'strictly_matched': 1, 'bias': 0, 'slightly_in_front': -1,
+    'slightly_behind': -1, 'worst_side': 1, 'known_sides': 0, 'closely': 1, 'spread': 0, 'turned_normals': -1, 'rim_worst': -1,
+    'rim_second_worst': -1, 'rim_mean': -1, 'through_region': -1,
+    # times log_matched_pixels
+    'matched_size': 0, 'seen_through_size': 0, 'matched_of_known_size': 0, 'silhouette_continues_size': 0,
+    'silhouette_known_size': 0, 'unexplained_size': 0, 'normal_agreement_size': 0, 'residual_size': 0,
+    # of the ranking, and the features that the pose explains
+    'at_place': 1, 'looked_through': -1, 'agreeing': 1, 'goes_on': -1, 'log_votes': 1,
+    'log_features': 0, 'log_matching_features': 1, 'matching_share': 1}
+
 OBJECT_WEIGHT = 6.0  # of an object's right candidates together, against 1 of a wrong one
 RIGHT = {'P': (0.20, math.radians(25)), 'R': (0.10, math.radians(15)), 'J': (0.10, math.radians(15))}
 
@@ -129,13 +146,14 @@ def logits(p):
 
 
 class Trees:
-    """Gradient boosting for the judgement; the settings keep the leaves well filled."""
+    """Gradient boosting for the judgement; the settings keep the leaves well filled, JUDGEMENT_FIGURES their order."""
 
     def __init__(self, X, y, weight):
         from sklearn.ensemble import HistGradientBoostingClassifier
         self.fitted = HistGradientBoostingClassifier(
             max_iter=400, learning_rate=0.04, max_leaf_nodes=16, l2_regularization=5.0,
-            min_samples_leaf=60, early_stopping=False, random_state=0).fit(X, y, sample_weight=weight)
+            min_samples_leaf=60, early_stopping=False, random_state=0,
+            monotonic_cst=list(JUDGEMENT_FIGURES.values())).fit(X, y, sample_weight=weight)
         self.slope, self.shift = 1.0, 0.0  # of the logit, after calibration
 
     def predict(self, X):

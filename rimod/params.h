@@ -36,7 +36,7 @@ struct PoseRefinementParams {
 
 // Which of the judged candidates become detections (default method).
 struct ChoiceParams {
-  double min_probability = 0.42;     // smallest score of a detection; 0 .. 1
+  double min_probability = 0.36;     // smallest score of a detection; 0 .. 1
   double max_explained_share = 0.4;  // of its pixels may be explained by better ones; 0 .. 1
   double same_class_distance =
       0.4;  // of the diameter, between centres of two of one class; 0 .. 10

@@ -33,7 +33,7 @@ struct RefinementParams {
   double damping = 0.02;            // of the points' number, keeps what they do not determine; > 0
   double tilt_damping = 0.05;       // the same for the tilt from the vertical; > 0
   double upright_tilt = 0.044;      // rad, what leans less may be upright; 0 = nothing .. 0.5
-  double min_leaning_odds = 50.0;   // .. unless leaning it is so many times as probable; >= 1
+  double min_leaning_odds = 5.0;    // .. unless leaning it is so many times as probable; >= 1
   void Validate() const;
   RefinementSchedule BeforeRanking() const;
   RefinementSchedule BeforeScreening() const;

@@ -25,8 +25,7 @@ TEST(SharedAmongModelsTest, ManyModelsShareTheWork) {
   EXPECT_NEAR(shared.ranking.min_screened_score, 0.003 * std::pow(4.0, 0.65), 1e-9);
   params.ranking.num_models = 1'000'000;
   EXPECT_EQ(SharedAmongModels(params, 1).matching.max_matches, 2);
-  EXPECT_EQ(SharedAmongModels(params, 1).ranking.min_screened_score,
-            params.choice.min_probability);
+  EXPECT_EQ(SharedAmongModels(params, 1).ranking.min_screened_score, params.choice.min_probability);
   EXPECT_EQ(SharedAmongModels(params, 1).ranking.judged.always, 1);
   params.matching.max_matches = 1;  // as wanted
   EXPECT_EQ(SharedAmongModels(params, 1).matching.max_matches, 1);
