@@ -5,8 +5,8 @@ usage: make_clouds.py --scenes OUT/scenes --sensor lidar|camera --program rimod-
 
 The sensor stands where the scenes' scanner does, at another height and pitch in every scene; a camera looks in two directions. Writes
 FOLDER/NNN.lcm (channels CLOUD and CARRIER_TO_LOCAL), FOLDER/NNN.yaml (the configuration that tells rimod the sensor's mount) and
-FOLDER/labels.json (in the benchmark's format; an object is listed when the sensor has a point of it, "visible" is not computed).
-A scene's mount depends on its number, the sensor and the name of the folder that holds the scenes' only.
+FOLDER/labels.json (in the benchmark's format; an object is listed when the sensor has a point of it; "visible" is always 1).
+A scene's mount depends only on its number, the sensor and the name of the folder above --scenes.
 """
 import argparse
 import json
