@@ -239,21 +239,25 @@ TEST_F(ShardsTest, UnderOverloadAllShardsLeaveOutTheSameScans) {
   StartAll();
   ExpectResultOf({"heap", "pile"});
   bus_.Forget();
-  constexpr int kNumScans = 60;
-  for (int i = 0; i < kNumScans; ++i) {
-    processes_["second"]->Signal(i % 4 < 2 ? SIGSTOP : SIGCONT);
-    ++utime_;
-    bus_.PublishAll("RIMOD_RANGE_IMAGE", ToSections(image_, utime_));
-    bus_.PublishAll("RIMOD_FEATURES", ToSections(features_, utime_));
+  // How many of a round become results is a matter of the machine: at least its newest.
+  constexpr std::size_t kFewest = 3;
+  const auto results = [this] { return bus_.Messages<detections_t>("RIMOD_DETECTIONS"); };
+  int num_scans = 0;
+  while (results().size() < kFewest && !HasFailure()) {
+    for (int i = 0; i < 60; ++i, ++num_scans) {
+      processes_["second"]->Signal(i % 4 < 2 ? SIGSTOP : SIGCONT);
+      ++utime_;
+      bus_.PublishAll("RIMOD_RANGE_IMAGE", ToSections(image_, utime_));
+      bus_.PublishAll("RIMOD_FEATURES", ToSections(features_, utime_));
+    }
+    processes_["second"]->Signal(SIGCONT);
+    ExpectResultOf({"heap", "pile"});  // the newest is among them
   }
-  processes_["second"]->Signal(SIGCONT);
-  ExpectResultOf({"heap", "pile"});  // the newest is among them
   std::int64_t num_fused = 0, num_of_all = 0;
-  for (const detections_t& message : bus_.Messages<detections_t>("RIMOD_DETECTIONS")) {
+  for (const detections_t& message : results()) {
     ++num_fused;
     num_of_all += message.num_models == 2;
   }
-  EXPECT_GE(num_fused, 3);
   EXPECT_GE(10 * num_of_all, 9 * num_fused) << num_of_all << " of " << num_fused;
   const auto num_overtaken = [this] {
     std::map<int, std::int64_t> of_pids;
@@ -267,7 +271,7 @@ TEST_F(ShardsTest, UnderOverloadAllShardsLeaveOutTheSameScans) {
         const auto of_pids = num_overtaken();
         return of_pids.size() == 2 &&
                std::all_of(of_pids.begin(), of_pids.end(), [&](const auto& item) {
-                 return item.second >= kNumScans - num_fused - 10;
+                 return item.second >= num_scans - num_scans / 6 - num_fused;
                });
       },
       kLong))
