@@ -28,12 +28,6 @@ struct CandidateModel {
 
 std::vector<CandidateModel> CandidateModelsOf(const std::vector<ObjectModel>& models);
 
-// Neighbouring pixels by index.
-struct PixelRun {
-  int first = 0;
-  int count = 0;
-};
-
 // The runs of pixels that are given by rising index.
 std::vector<PixelRun> RunsOf(const std::vector<int>& pixels);
 

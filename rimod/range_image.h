@@ -99,6 +99,12 @@ Direction DirectionOf(const Eigen::Vector3d& p_sensor);
 // Unit vector of a direction.
 Eigen::Vector3d UnitVector(const Direction& direction);
 
+// Neighbouring pixels by index, row after row.
+struct PixelRun {
+  int first = 0;
+  int count = 0;
+};
+
 struct PixelPosition {
   double row = 0.0;  // pixel centres at k + 0.5: floor gives the index
   double column = 0.0;
