@@ -47,6 +47,7 @@ ExtractorProcess::ExtractorProcess(lcm::LCM* in, lcm::LCM* out, const Channels& 
     : tempo_(tempo),
       channels_(channels),
       params_(configuration.pipeline),
+      growing_extractor_(params_),
       pool_(num_threads),
       joiner_(JoinerParamsFrom(configuration.bus)),
       partial_joiner_(JoinerParamsFrom(configuration.bus)),
@@ -218,7 +219,7 @@ void ExtractorProcess::WorkOnPartial(const StampedScan& scan) {
   const Execution execution =
       StoppableExecution(StoppableExecution(pool_.MakeExecution(), &stop_), &worker_.wanted());
   const RangeImage image = ComputeRangeImage(scan.scan, params_, execution);
-  const FeatureSet features = ExtractFeatures(image, params_, execution);
+  const FeatureSet features = growing_extractor_.Look(Time(scan.utime), image, execution);
   if (last_scan_ == scan.utime) throw Stopped();
   publisher_.PublishAll(channels_.partial_range_image,
                         ToPartialSections(image, scan.utime, scan.utime_end));

@@ -22,6 +22,7 @@
 #include "io/tempo.h"
 #include "io/thread_pool.h"
 #include "rimod/cloud_placer.h"
+#include "rimod/growing_look.h"
 #include "rimod/growing_scan.h"
 #include "rimod/partial_scan_t.hpp"
 #include "rimod/scan_end_t.hpp"
@@ -72,6 +73,7 @@ class ExtractorProcess {
   const Tempo tempo_;
   const Channels channels_;
   const PipelineParams params_;
+  GrowingExtractor growing_extractor_;  // the worker's
   std::atomic<bool> stop_{false};
   ThreadPool pool_;
   SectionJoiner<scan_t> joiner_;

@@ -249,7 +249,9 @@ void MatcherProcess::RebuildDatabase() try {
     return status_.ReportError("models", "more models than can be kept: the new ones are left out");
   }
   for (const auto& [name, model] : bus_models) models.push_back(model);
+  growing_detector_.reset();
   database_.emplace(std::move(models), params_, execution);
+  growing_detector_.emplace(*database_, params_);
   bus_models_ = std::move(bus_models);
   num_models_ = static_cast<std::int64_t>(database_->models().size());
   if (shard_) shard_->SetNumModels(static_cast<int>(num_models_));
@@ -340,7 +342,7 @@ void MatcherProcess::WorkOnPartial(std::int64_t sweep_utime, const DescribedScan
   const Execution execution =
       StoppableExecution(StoppableExecution(pool_.MakeExecution(), &stop_), &worker_->wanted());
   const DetectionResult result =
-      DetectObjects(scan.image, scan.features, *database_, params_, execution);
+      growing_detector_->Look(Time(sweep_utime), scan.image, scan.features, execution);
   const std::vector<EarlySighting> sightings =
       SightingsOf(result.detections, scan.image, *database_);
   if (early_ && early_->utime != sweep_utime) FinishSweep({});

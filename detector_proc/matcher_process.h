@@ -29,6 +29,7 @@
 #include "rimod/detector.h"
 #include "rimod/early_detection.h"
 #include "rimod/feature_set_t.hpp"
+#include "rimod/growing_look.h"
 #include "rimod/object_model_t.hpp"
 #include "rimod/partial_feature_set_t.hpp"
 #include "rimod/partial_range_image_t.hpp"
@@ -136,6 +137,7 @@ class MatcherProcess {
   // params_, with the number of models in all shards.
   PipelineParams shared_params_;
   std::optional<ModelDatabase> database_;
+  std::optional<GrowingDetector> growing_detector_;  // of the database
   EarlyTracker tracker_;
   // The sweep that is looked at early: its last look, without objects.
   std::optional<StampedEarlyObjects> early_;

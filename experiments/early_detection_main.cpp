@@ -14,9 +14,11 @@
 #include "io/model_file.h"
 #include "io/pose_messages.h"
 #include "io/scan_source.h"
+#include "io/stage_timer.h"
 #include "io/thread_pool.h"
 #include "rimod/detector.h"
 #include "rimod/early_detection.h"
+#include "rimod/growing_look.h"
 #include "rimod/growing_scan.h"
 
 namespace rimod {
@@ -59,13 +61,21 @@ class Watcher {
       : database_(database),
         params_(params),
         execution_(std::move(execution)),
+        extractor_(params),
+        detector_(database, params),
         tracker_(params.early),
         out_(out) {}
 
   void OnGrowth(const SweepGrowth& growth) {
     if (!growing_.Add(growth)) return;
     const auto begin = Clock::now();
-    const Look look = LookAt(*growing_.scan());
+    StageTimer timer;
+    Execution execution = execution_;
+    timer.Watch(&execution);
+    Look look;
+    look.image = ComputeRangeImage(*growing_.scan(), params_, execution);
+    const FeatureSet features = extractor_.Look(growing_.sweep_begin(), look.image, execution);
+    look.result = detector_.Look(growing_.sweep_begin(), look.image, features, execution);
     const std::vector<EarlySighting> sightings =
         SightingsOf(look.result.detections, look.image, database_);
     const std::vector<EarlyObject> told =
@@ -77,6 +87,7 @@ class Watcher {
     }
     looks_[growing_.sweep_begin().count()].push_back({{"known_until", growing_.end().count()},
                                                       {"ms", MillisecondsSince(begin)},
+                                                      {"stages", timer.times()},
                                                       {"sightings", std::move(seen)},
                                                       {"told", ToJson(told)}});
   }
@@ -116,6 +127,8 @@ class Watcher {
   const PipelineParams& params_;
   Execution execution_;
   GrowingScan growing_;
+  GrowingExtractor extractor_;
+  GrowingDetector detector_;
   EarlyTracker tracker_;
   std::map<std::int64_t, Json> looks_;  // by the sweep's utime
   std::ostream* out_;

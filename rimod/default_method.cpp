@@ -71,14 +71,17 @@ bool SetFigures(const Scene& scene, const ModelDatabase& database, ViewCompariso
   return true;
 }
 
-// Scores all models' hypotheses before refinement, each on its own.
+// Scores all models' hypotheses before refinement, each on its own; not those without news.
 void ScoreHypotheses(const Scene& scene, const ModelDatabase& database, const RankingParams& params,
-                     const Execution& execution, std::vector<std::vector<Hypothesis>>* of_models) {
+                     const Execution& execution, const ImageChange& change,
+                     std::vector<std::vector<Hypothesis>>* of_models) {
   execution.parallel_for(kBatches, [&](std::size_t batch) {
     ViewComparison comparison(scene, params.coarse_epsilon, params);
     for (std::vector<Hypothesis>& hypotheses : *of_models) {
       for (std::size_t i = batch; i < hypotheses.size(); i += kBatches) {
         Hypothesis& hypothesis = hypotheses[i];
+        if (!HasNews(change, database.models()[hypothesis.model], hypothesis.T_sensor_object))
+          continue;
         if (SetFigures(scene, database, &comparison, &hypothesis))
           hypothesis.score = Probability(kProposalWeights, RankFigures(hypothesis.figures));
       }
@@ -166,12 +169,20 @@ void RefineAndRank(const Scene& scene, const ModelDatabase& database, const Pipe
 }  // namespace
 
 ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& database,
-                           const PipelineParams& params, const Execution& execution) {
+                           const PipelineParams& params, const Execution& execution,
+                           const KnownMatches* known) {
   const StageScope stage(execution, "matching");
-  std::vector<Feature> projected(features.features.size());
+  const std::vector<int> known_as =
+      known ? FindKnown(features, known->features) : std::vector<int>(features.features.size(), -1);
+  std::vector<int> unknown;
+  for (std::size_t i = 0; i < known_as.size(); ++i)
+    if (known_as[i] < 0) unknown.push_back(static_cast<int>(i));
+  std::vector<Feature> projected(unknown.size());
   execution.parallel_for(kBatches, [&](std::size_t batch) {
-    for (std::size_t i = batch; i < projected.size(); i += kBatches)
-      projected[i].descriptor = database.projection().Project(features.features[i].descriptor);
+    for (std::size_t i = batch; i < projected.size(); i += kBatches) {
+      projected[i].descriptor =
+          database.projection().Project(features.features[unknown[i]].descriptor);
+    }
   });
   const MatchingParams matching =
       ForFeatures(params.matching, static_cast<int>(features.features.size()));
@@ -179,6 +190,7 @@ ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& data
   for (int m = 0; m < static_cast<int>(matches.size()); ++m) {
     matches[m] = MatchFeatures(projected, database.projected_descriptors(m), matching, execution);
     for (Correspondence& match : matches[m]) match.model_feature += database.first_feature(m);
+    if (known) matches[m] = WithKnown(matches[m], known->matches[m], known_as);
   }
   return matches;
 }
@@ -187,7 +199,7 @@ std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& 
                                           const ModelMatches& matches,
                                           const ModelDatabase& database,
                                           const PipelineParams& params, const Execution& execution,
-                                          int* num_found) {
+                                          int* num_found, const ImageChange& change) {
   std::vector<std::vector<Hypothesis>> hypotheses(matches.size());
   {
     const StageScope stage(execution, "hypotheses");
@@ -200,7 +212,7 @@ std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& 
     *num_found += static_cast<int>(list.size());
   const StageScope stage(execution, "scoring");
   const RankingParams& ranking = params.ranking;
-  ScoreHypotheses(scene, database, ranking, execution, &hypotheses);
+  ScoreHypotheses(scene, database, ranking, execution, change, &hypotheses);
   return BestOfEachModel(RankEachModel(hypotheses, database, ranking.max_scanned, kProposalWeights,
                                        ranking, execution),
                          ranking.refined);
@@ -240,21 +252,43 @@ std::vector<Candidate> ChooseCandidates(const Scene& scene,
 
 JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
                           const ModelDatabase& database, const PipelineParams& all_params,
-                          const Execution& execution) {
+                          const Execution& execution, std::optional<EarlierLook>* earlier) {
   const PipelineParams params =
       SharedAmongModels(all_params, static_cast<int>(database.models().size()));
-  const Scene scene = [&] {
+  const EarlierLook* const before = earlier && *earlier ? &**earlier : nullptr;
+  const ImageChange change = before ? ImageChange(before->scene.image(), image) : ImageChange();
+  Scene scene = [&] {
     const StageScope stage(execution, "scene_normals");
-    return Scene(image, params.evidence.normal_radius, execution);
+    const double radius = params.evidence.normal_radius;
+    return before ? Scene(image, radius, execution, before->scene, change)
+                  : Scene(image, radius, execution);
   }();
   int num_found = 0;
-  const ModelMatches matches = MatchToModels(features, database, params, execution);
-  const std::vector<Hypothesis> ranked = RankHypotheses(
-      scene, ProposeHypotheses(scene, features, matches, database, params, execution, &num_found),
-      database, params, execution);
-  const std::vector<JudgedCandidate> judged =
-      JudgeCandidates(scene, features, matches, ranked, database, params, execution);
-  return ToJudgedScan(scene, judged, database, num_found);
+  ModelMatches matches =
+      MatchToModels(features, database, params, execution, before ? &before->known : nullptr);
+  const auto with_earlier = [&](std::vector<Hypothesis> fresh, auto member,
+                                const ModelQuota& quota) {
+    return before ? WithSettled(std::move(fresh), before->*member, change, database, quota) : fresh;
+  };
+  std::vector<Hypothesis> proposed = with_earlier(
+      ProposeHypotheses(scene, features, matches, database, params, execution, &num_found, change),
+      &EarlierLook::proposed, params.ranking.refined);
+  std::vector<Hypothesis> ranked =
+      with_earlier(RankHypotheses(scene, Unsettled(proposed), database, params, execution),
+                   &EarlierLook::ranked, params.ranking.judged);
+  JudgedScan found = ToJudgedScan(
+      scene,
+      JudgeCandidates(scene, features, matches, Unsettled(ranked), database, params, execution),
+      database, num_found);
+  if (before) AddSettled(before->judged, change, database, &found);
+  if (earlier) {
+    earlier->emplace(EarlierLook{std::move(scene),
+                                 {features, std::move(matches)},
+                                 std::move(proposed),
+                                 std::move(ranked),
+                                 found});
+  }
+  return found;
 }
 
 }  // namespace rimod

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "rimod/default_method.h"
 #include "rimod/paper_method.h"
 
 namespace rimod {
@@ -30,9 +29,9 @@ RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
 
 DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,
                               const ModelDatabase& database, const PipelineParams& params,
-                              const Execution& execution) {
+                              const Execution& execution, std::optional<EarlierLook>* earlier) {
   if (params.method == Method::kDefault) {
-    const JudgedScan judged = JudgeObjects(image, features, database, params, execution);
+    const JudgedScan judged = JudgeObjects(image, features, database, params, execution, earlier);
     const StageScope stage(execution, "collisions");
     return ChooseDetections(judged, params);
   }
@@ -44,11 +43,11 @@ DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& feature
 
 JudgedScan JudgeObjects(const RangeImage& image, const FeatureSet& features,
                         const ModelDatabase& database, const PipelineParams& params,
-                        const Execution& execution) {
+                        const Execution& execution, std::optional<EarlierLook>* earlier) {
   RequireFitting(features, database, params);
   if (params.method != Method::kDefault)
     throw std::invalid_argument("only the default method judges each model by itself");
-  return FindByEvidence(image, features, database, params, execution);
+  return FindByEvidence(image, features, database, params, execution, earlier);
 }
 
 }  // namespace rimod

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "rimod/candidate_choice.h"
+#include "rimod/default_method.h"
 #include "rimod/detection.h"
 #include "rimod/execution.h"
 #include "rimod/feature_extraction.h"
@@ -26,16 +29,17 @@ RangeImage ComputeRangeImage(const Scan& scan, const PipelineParams& params,
 
 // Finds the database's objects in a scan given as range image and features. Throws
 // std::invalid_argument for features of another kind than the parameters give and for a database
-// prepared for another method.
+// prepared for another method. earlier: see FindByEvidence() (default_method.h).
 DetectionResult DetectObjects(const RangeImage& image, const FeatureSet& features,
                               const ModelDatabase& database, const PipelineParams& params,
-                              const Execution& execution);
+                              const Execution& execution,
+                              std::optional<EarlierLook>* earlier = nullptr);
 
 // DetectObjects of the default method before its last step, which is ChooseDetections
 // (candidate_choice.h): for matchers that share the models. Throws as DetectObjects, also when the
 // parameters choose another method.
 JudgedScan JudgeObjects(const RangeImage& image, const FeatureSet& features,
                         const ModelDatabase& database, const PipelineParams& params,
-                        const Execution& execution);
+                        const Execution& execution, std::optional<EarlierLook>* earlier = nullptr);
 
 }  // namespace rimod

@@ -1,6 +1,7 @@
 #include "rimod/feature_extraction.h"
 
-#include <optional>
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -74,7 +75,13 @@ FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params
 FeatureSet DescribeFeatures(const RangeImage& image, const std::vector<PixelIndex>& interest_points,
                             const PipelineParams& params, const Execution& execution) {
   const StageScope stage(execution, "descriptors");
-  std::vector<std::optional<Feature>> described(interest_points.size());
+  return ToFeatureSet(DescribePoints(image, interest_points, params, execution), params);
+}
+
+DescribedPoints DescribePoints(const RangeImage& image,
+                               const std::vector<PixelIndex>& interest_points,
+                               const PipelineParams& params, const Execution& execution) {
+  DescribedPoints described(interest_points.size());
   if (params.descriptor == DescriptorType::kSphericalSpin) {
     const SphericalSpinDescriber describe(params.spherical_spin);
     execution.parallel_for(interest_points.size(), [&](std::size_t i) {
@@ -85,10 +92,22 @@ FeatureSet DescribeFeatures(const RangeImage& image, const std::vector<PixelInde
       described[i] = DescribePatch(image, interest_points[i], params.range_patch);
     });
   }
+  return described;
+}
+
+double DescriptorReach(const RangeImage& image, const PixelIndex& pixel,
+                       const PipelineParams& params) {
+  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  return params.descriptor == DescriptorType::kSphericalSpin
+             ? ReachOf(params.spherical_spin, spacing)
+             : ReachOf(params.range_patch, spacing);
+}
+
+FeatureSet ToFeatureSet(DescribedPoints points, const PipelineParams& params) {
   FeatureSet set;
   set.descriptor_kind = DescriptorKind(params);
   set.descriptor_size = DescriptorSize(params);
-  for (std::optional<Feature>& feature : described)
+  for (std::optional<Feature>& feature : points)
     if (feature) set.features.push_back(std::move(*feature));
   return set;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,18 @@ FeatureSet ExtractFeatures(const RangeImage& image, const PipelineParams& params
 // The second step of it: of these interest points. Stage descriptors.
 FeatureSet DescribeFeatures(const RangeImage& image, const std::vector<PixelIndex>& interest_points,
                             const PipelineParams& params, const Execution& execution);
+
+// The surroundings of interest points, each on its own: nothing where there is no normal. They
+// depend on the points within DescriptorReach() of the interest point's only.
+using DescribedPoints = std::vector<std::optional<Feature>>;
+DescribedPoints DescribePoints(const RangeImage& image,
+                               const std::vector<PixelIndex>& interest_points,
+                               const PipelineParams& params, const Execution& execution);
+// m, of a measured pixel.
+double DescriptorReach(const RangeImage& image, const PixelIndex& pixel,
+                       const PipelineParams& params);
+// Of what these parameters describe, without what has no normal.
+FeatureSet ToFeatureSet(DescribedPoints points, const PipelineParams& params);
 
 // Features and validation points of a model whose surface (name, box, points, normals,
 // point_spacing) is given: renders its virtual views and extracts them (sections III-A, III-C).

@@ -8,6 +8,14 @@ namespace {
 // 240 MB of points, the most that a sweep may have (SweepCollector).
 constexpr std::size_t kMaxPoints = 20000000;
 
+// Poses from which a scan looks the same.
+bool IsAbout(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kApart = 0.03;   // m, less than a scan's sensor itself moves about its pose
+  constexpr double kTurned = 0.02;  // rad
+  return (a.translation() - b.translation()).norm() < kApart &&
+         Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle() < kTurned;
+}
+
 }  // namespace
 
 bool GrowingScan::Add(const SweepGrowth& growth) {
@@ -23,7 +31,8 @@ bool GrowingScan::Add(const SweepGrowth& growth) {
       scan_.reset();
       return false;
     }
-    scan_->T_local_sensor = growth.scan.T_local_sensor;
+    if (!IsAbout(scan_->T_local_sensor, growth.scan.T_local_sensor))
+      scan_->T_local_sensor = growth.scan.T_local_sensor;
     scan_->points.insert(scan_->points.end(), growth.scan.points.begin(), growth.scan.points.end());
     scan_->no_return_directions.insert(scan_->no_return_directions.end(),
                                        growth.scan.no_return_directions.begin(),

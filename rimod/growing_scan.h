@@ -20,7 +20,8 @@ class GrowingScan {
   // the scan is that of the sweep.
   bool IsWhole(const SweepEnd& end) const;
 
-  // Nothing before the first step and after giving up.
+  // Nothing before the first step and after giving up. Its sensor pose is the newest growth's or an
+  // earlier one that is about the same, so that what was seen stays where it was.
   const std::optional<Scan>& scan() const { return scan_; }
   // Of the sweep and what is known of it; valid where there is a scan.
   Time sweep_begin() const { return sweep_begin_; }

@@ -94,6 +94,7 @@ struct Hypothesis {
   Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
   double score = 0.0;
   RankingFigures figures;
+  bool settled = false;  // from an earlier look at a growing sweep, and there is nothing new to it
 };
 
 // Compares poses with one scene, one after the other; of use to one thread.

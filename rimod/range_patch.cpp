@@ -60,6 +60,14 @@ Descriptor ToDescriptor(const Heights& heights, bool mask_empty_cells) {
   return descriptor;
 }
 
+// m
+double NormalRadius(const RangePatchParams& params, double spacing) {
+  return std::max(params.normal_radius, params.normal_pixels * spacing);
+}
+
+// Of the square, m.
+double HalfDiagonal(const RangePatchParams& params) { return params.support_size * std::sqrt(0.5); }
+
 }  // namespace
 
 void RangePatchParams::Validate() const {
@@ -119,12 +127,15 @@ std::optional<Eigen::Vector3d> NormalAt(const RangeImage& image, const PixelInde
   return normal.dot(centre) > 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 
+double ReachOf(const RangePatchParams& params, double spacing) {
+  return std::max(NormalRadius(params, spacing), HalfDiagonal(params));
+}
+
 std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& pixel,
                                      const RangePatchParams& params) {
   const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
-  const double normal_radius = std::max(params.normal_radius, params.normal_pixels * spacing);
   const std::optional<Eigen::Vector3d> normal =
-      NormalAt(image, pixel, normal_radius, params.min_points);
+      NormalAt(image, pixel, NormalRadius(params, spacing), params.min_points);
   if (!normal) return std::nullopt;
   Feature feature;
   feature.position = image.point(pixel.row, pixel.column);
@@ -136,12 +147,12 @@ std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& 
 
   Heights heights(params.resolution);
   const double cell = params.support_size / params.resolution;
-  const double reach = params.support_size * std::sqrt(0.5);  // half the square's diagonal
-  VisitNeighbourhood(image, pixel, reach, [&](const Eigen::Vector3f& point, int step) {
-    const Eigen::Vector3f p_patch = R_patch_sensor * (point - feature.position);
-    const double footprint = 0.5 * step * image.grid().resolution * point.norm();
-    Splat(p_patch, static_cast<float>(footprint), static_cast<float>(cell), &heights);
-  });
+  VisitNeighbourhood(
+      image, pixel, HalfDiagonal(params), [&](const Eigen::Vector3f& point, int step) {
+        const Eigen::Vector3f p_patch = R_patch_sensor * (point - feature.position);
+        const double footprint = 0.5 * step * image.grid().resolution * point.norm();
+        Splat(p_patch, static_cast<float>(footprint), static_cast<float>(cell), &heights);
+      });
   feature.descriptor = ToDescriptor(heights, params.mask_empty_cells);
   return feature;
 }

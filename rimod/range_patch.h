@@ -38,6 +38,10 @@ Eigen::Matrix3d PatchFrame(const Eigen::Vector3d& normal, const Eigen::Vector3d&
 std::optional<Eigen::Vector3d> NormalAt(const RangeImage& image, const PixelIndex& pixel,
                                         double radius, int min_points);
 
+// m, how far from the pixel's point those are that its normal and its patch depend on; spacing: m,
+// between neighbouring measurements there.
+double ReachOf(const RangePatchParams& params, double spacing);
+
 // The normal-aligned range patch at a measured pixel: the surface within the support seen from
 // along the normal, heights in cells, the mean subtracted (paper, section III-A). Nothing without a
 // normal.

@@ -120,7 +120,18 @@ PointGrid::PointGrid(const RangeImage& image)
   }
 }
 
+Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution,
+             const Scene& before, const ImageChange& change)
+    : Scene(image) {
+  FillPixels(normal_radius, execution, change.everything() ? nullptr : &before, change);
+}
+
 Scene::Scene(const RangeImage& image, double normal_radius, const Execution& execution)
+    : Scene(image) {
+  FillPixels(normal_radius, execution, nullptr, ImageChange());
+}
+
+Scene::Scene(const RangeImage& image)
     : image_(image),
       points_(image),
       azimuth_left_(static_cast<float>(image.grid().azimuth_left)),
@@ -130,7 +141,10 @@ Scene::Scene(const RangeImage& image, double normal_radius, const Execution& exe
       width_(image.width()),
       height_(image.height()),
       ranges_(static_cast<std::size_t>(image.grid().size()), 0.0f),
-      normals_(ranges_.size(), Eigen::Vector3f::Zero()) {
+      normals_(ranges_.size(), Eigen::Vector3f::Zero()) {}
+
+void Scene::FillPixels(double normal_radius, const Execution& execution, const Scene* before,
+                       const ImageChange& change) {
   execution.parallel_for(static_cast<std::size_t>(height_), [&](std::size_t i) {
     const int row = static_cast<int>(i);
     for (int column = 0; column < width_; ++column) {
@@ -139,7 +153,11 @@ Scene::Scene(const RangeImage& image, double normal_radius, const Execution& exe
         ranges_[pixel] = std::numeric_limits<float>::infinity();
       } else if (image_.measured(row, column)) {
         ranges_[pixel] = image_.range(row, column);
-        normals_[pixel] = NormalOf(image_, points_, row, column, static_cast<float>(normal_radius));
+        const bool known = before && !change.TouchesPixels(row, column, PointGrid::kMargin);
+        normals_[pixel] =
+            known ? before->normal((row - change.row_shift()) * before->width_ + column -
+                                   change.column_shift())
+                  : NormalOf(image_, points_, row, column, static_cast<float>(normal_radius));
       }
     }
   });

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "rimod/execution.h"
+#include "rimod/image_change.h"
 #include "rimod/range_image.h"
 
 namespace rimod {
@@ -52,6 +53,10 @@ class Scene {
  public:
   // Normals are those of the plane through the points within normal_radius (m).
   Scene(const RangeImage& image, double normal_radius, const Execution& execution);
+  // The same where the image differs from an earlier scene's of the same radius by no more than the
+  // change: what is still so is taken from there.
+  Scene(const RangeImage& image, double normal_radius, const Execution& execution,
+        const Scene& before, const ImageChange& change);
 
   const RangeImage& image() const { return image_; }
   const SphericalGrid& grid() const { return image_.grid(); }
@@ -73,6 +78,10 @@ class Scene {
   const Eigen::Vector3f& normal(int pixel) const { return normals_[pixel]; }
 
  private:
+  explicit Scene(const RangeImage& image);  // without ranges and normals
+  void FillPixels(double normal_radius, const Execution& execution, const Scene* before,
+                  const ImageChange& change);
+
   RangeImage image_;
   PointGrid points_;
   float azimuth_left_, elevation_top_, pixels_per_radian_;

@@ -106,6 +106,10 @@ std::optional<Descriptor> SphericalSpinImage(const std::vector<Eigen::Vector3f>&
   return spin_image.Normalised();
 }
 
+double ReachOf(const SphericalSpinParams& params, double spacing) {
+  return std::max({params.normal_radius, params.normal_pixels * spacing, Reach(params)});
+}
+
 SphericalSpinDescriber::SphericalSpinDescriber(const SphericalSpinParams& params)
     : params_((params.Validate(), params)) {
   if (params.dimensions > 0) projection_.emplace(params.resolution, params.DescriptorSize());

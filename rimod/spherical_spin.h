@@ -48,6 +48,10 @@ std::optional<Descriptor> SphericalSpinImage(const std::vector<Eigen::Vector3f>&
                                              const Eigen::Vector3f& normal,
                                              const SphericalSpinParams& params);
 
+// m, how far from a pixel's point those are that its normal and its spin image depend on; spacing:
+// m, between neighbouring measurements there.
+double ReachOf(const SphericalSpinParams& params, double spacing);
+
 // Describes pixels of range images by spherical spin images, compressed as the parameters say.
 class SphericalSpinDescriber {
  public:
