@@ -1,12 +1,13 @@
 #include "rimod/scene.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "rimod/fast_atan2.h"
+#include "rimod/plane_normal.h"
+#include "rimod/wide_loops.h"
 
 namespace rimod {
 namespace {
@@ -83,9 +84,7 @@ Eigen::Vector3f NormalOf(const RangeImage& image, const PointGrid& points, int r
     }
   }
   if (sums.count.sum() < kMinPoints) return Eigen::Vector3f::Zero();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(sums.Covariance());
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0).normalized();
+  const Eigen::Vector3f normal = PlaneNormal(sums.Covariance());
   if (!normal.allFinite()) return Eigen::Vector3f::Zero();
   return normal.dot(centre) > 0.0f ? Eigen::Vector3f(-normal) : normal;
 }
@@ -163,8 +162,9 @@ void Scene::FillPixels(double normal_radius, const Execution& execution, const S
   });
 }
 
-void Scene::Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
-                    std::size_t begin, std::size_t end, ProjectedPoints* projected) const {
+RIMOD_WIDE_LOOPS void Scene::Project(const PointColumns& points,
+                                     const Eigen::Isometry3f& T_sensor_object, std::size_t begin,
+                                     std::size_t end, ProjectedPoints* projected) const {
   projected->pixels.resize(std::max(projected->pixels.size(), end));
   projected->ranges.resize(projected->pixels.size());
   const Eigen::Matrix3f R = T_sensor_object.linear();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rimod/fast_atan2.h"
+#include "rimod/wide_loops.h"
 
 namespace rimod {
 namespace {
@@ -56,7 +57,7 @@ FacingPoints FindFacing(const ObjectModel& model, const Eigen::Isometry3f& T_sen
   return facing;
 }
 
-void ProjectAll(const SphericalGrid& grid, float radius, FacingPoints* facing) {
+RIMOD_WIDE_LOOPS void ProjectAll(const SphericalGrid& grid, float radius, FacingPoints* facing) {
   const std::size_t count = facing->x.size();
   for (std::vector<float>* const column :
        {&facing->ranges, &facing->rows, &facing->columns, &facing->reach_columns})
