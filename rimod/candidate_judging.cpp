@@ -29,24 +29,33 @@ class Judge {
     const RefinementParams& refinement = params_.refinement;
     const Eigen::Isometry3f first = RefinePose(
         scene_, model.coarse_sample(), ranked.T_sensor_object, refinement.BeforeScreening());
-    JudgeAt(first, &result);
-    if (result.candidate.score < params_.ranking.min_screened_score) return result;
+    const double min_score = params_.ranking.min_screened_score;
+    if (ranked.figures.pixels_across >= params_.ranking.min_coarse_pixels) {
+      constexpr double kFarBelow = 0.1;  // a quarter of the pixels is less sure
+      JudgeAt(first, GatherCoarseEvidence, &result);
+      if (result.candidate.score < kFarBelow * min_score) return result;
+    }
+    JudgeAt(first, GatherEvidence, &result);
+    if (result.candidate.score < min_score) return result;
     const RefinementSchedule schedule = refinement.BeforeJudging();
     const Eigen::Isometry3f refined = RefinePose(scene_, model.sample(), first, schedule);
-    JudgeAt(refined, &result);
+    JudgeAt(refined, GatherEvidence, &result);
     if (static_cast<double>(TiltOf(refined)) >= refinement.upright_tilt) return result;
     JudgedCandidate upright = result;
-    JudgeAt(StandUpright(scene_, model.sample(), refined, schedule), &upright);
+    JudgeAt(StandUpright(scene_, model.sample(), refined, schedule), GatherEvidence, &upright);
     const double odds = Odds(upright.candidate.score) * refinement.min_leaning_odds;
     return Odds(result.candidate.score) > odds ? result : upright;
   }
 
  private:
-  void JudgeAt(const Eigen::Isometry3f& T_sensor_object, JudgedCandidate* result) const {
+  // gather: GatherEvidence or GatherCoarseEvidence.
+  template <typename Gather>
+  void JudgeAt(const Eigen::Isometry3f& T_sensor_object, const Gather& gather,
+               JudgedCandidate* result) const {
     Candidate& candidate = result->candidate;
     candidate.T_sensor_object = T_sensor_object.cast<double>();
-    result->evidence = GatherEvidence(scene_, database_.judged_models()[candidate.model],
-                                      candidate.T_sensor_object, params_.evidence);
+    result->evidence = gather(scene_, database_.judged_models()[candidate.model],
+                              candidate.T_sensor_object, params_.evidence);
     result->support = support_.Count(candidate);
     candidate.score = Probability(
         kJudgementTrees, JudgementFigures(result->evidence, result->figures, result->support));

@@ -27,7 +27,8 @@ struct JudgedCandidate {
 };
 
 // The ranked candidates refined in all degrees of freedom and judged, best first, ties by model.
-// What a first look after a short refinement gives up stays as that saw it. What leans by less than
+// What a first look after a short refinement gives up stays as that saw it, or, where the model
+// spans many pixels, a look at every other row and column before it. What leans by less than
 // refinement.upright_tilt is judged leaning and upright; it counts as upright unless leaning it is
 // min_leaning_odds times as probable: most things stand, but a sensor's own tilt is known to a
 // degree at best. Stage validation.

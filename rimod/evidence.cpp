@@ -23,12 +23,25 @@ struct Counts {
   Eigen::Matrix3f normal_products = Eigen::Matrix3f::Zero();
 };
 
+// The grid whose pixels have their centres where every step-th row and column has them.
+SphericalGrid EveryOther(SphericalGrid grid, int step) {
+  const double farther = 0.5 * (step - 1) * grid.resolution;
+  grid.azimuth_left += farther;
+  grid.elevation_top += farther;
+  grid.width = (grid.width + step - 1) / step;
+  grid.height = (grid.height + step - 1) / step;
+  grid.resolution *= step;
+  return grid;
+}
+
 // One pose compared with the scene.
 class Comparison {
  public:
+  // step: every so many rows and columns are compared.
   Comparison(const Scene& scene, const JudgedModel& model, const Eigen::Isometry3d& T_sensor_object,
-             const EvidenceParams& params)
+             const EvidenceParams& params, int step)
       : scene_(scene),
+        step_(step),
         model_(model),
         params_(params),
         T_sensor_object_(T_sensor_object.cast<float>()),
@@ -36,9 +49,10 @@ class Comparison {
     const Eigen::Vector3d centre =
         T_sensor_object * Eigen::Vector3d(0.5 * (model.model().box_min + model.model().box_max));
     distance_ = centre.norm();
-    pixel_size_ = scene.grid().resolution * distance_;
+    const SphericalGrid grid = EveryOther(scene.grid(), step);
+    pixel_size_ = grid.resolution * distance_;
     surface_ = &model.Thinned(pixel_size_);
-    rendered_ = RenderModel(*surface_, T_sensor_object, scene.grid());
+    rendered_ = RenderModel(*surface_, T_sensor_object, grid);
     fits_.width = rendered_.width;
     fits_.height = rendered_.height;
     fits_.pixels.assign(static_cast<std::size_t>(fits_.width) * fits_.height,
@@ -63,7 +77,8 @@ class Comparison {
 
  private:
   int ScenePixel(int row, int column) const {
-    const int r = rendered_.first_row + row, c = rendered_.first_column + column;
+    const int r = (rendered_.first_row + row) * step_,
+              c = (rendered_.first_column + column) * step_;
     return scene_.grid().Contains(r, c) ? r * scene_.grid().width + c : -1;
   }
 
@@ -241,9 +256,10 @@ class Comparison {
     v[kSilhouetteKnown] = Share(counts_.jump, counts_.jump + counts_.goes_on);
     v[kUnexplained] = Share(unexplained_points_, box_points_);
     constexpr int kSupportPoints = 5;
-    v[kSupported] = support_points_ >= kSupportPoints ? 1.0 : 0.0;
-    v[kLogMatchedPixels] = std::log1p(counts_.matched);
-    v[kLogRenderedPixels] = std::log1p(counts_.rendered);
+    const int pixels = step_ * step_;  // that each compared one stands for
+    v[kSupported] = pixels * support_points_ >= kSupportPoints ? 1.0 : 0.0;
+    v[kLogMatchedPixels] = std::log1p(pixels * counts_.matched);
+    v[kLogRenderedPixels] = std::log1p(pixels * counts_.rendered);
     v[kDistance] = distance_;
     v[kTilt] = std::acos(std::clamp(T_sensor_object_.linear()(2, 2), -1.0f, 1.0f));
     if (counts_.matched > 0) {
@@ -283,6 +299,7 @@ class Comparison {
   }
 
   const Scene& scene_;
+  const int step_;
   const JudgedModel& model_;
   const EvidenceParams& params_;
   const Eigen::Isometry3f T_sensor_object_;
@@ -313,7 +330,15 @@ void EvidenceParams::Validate() const {
 
 Evidence GatherEvidence(const Scene& scene, const JudgedModel& model,
                         const Eigen::Isometry3d& T_sensor_object, const EvidenceParams& params) {
-  return Comparison(scene, model, T_sensor_object, params).Gather();
+  return Comparison(scene, model, T_sensor_object, params, 1).Gather();
+}
+
+Evidence GatherCoarseEvidence(const Scene& scene, const JudgedModel& model,
+                              const Eigen::Isometry3d& T_sensor_object,
+                              const EvidenceParams& params) {
+  Evidence evidence = Comparison(scene, model, T_sensor_object, params, 2).Gather();
+  evidence.explained.clear();
+  return evidence;
 }
 
 }  // namespace rimod

@@ -74,4 +74,9 @@ struct Evidence {
 Evidence GatherEvidence(const Scene& scene, const JudgedModel& model,
                         const Eigen::Isometry3d& T_sensor_object, const EvidenceParams& params);
 
+// About the same, from every other row and column: for a first look. Explains nothing.
+Evidence GatherCoarseEvidence(const Scene& scene, const JudgedModel& model,
+                              const Eigen::Isometry3d& T_sensor_object,
+                              const EvidenceParams& params);
+
 }  // namespace rimod

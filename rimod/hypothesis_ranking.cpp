@@ -75,6 +75,7 @@ void RankingParams::Validate() const {
   CheckQuota("refined", refined, 1'000'000);
   CheckQuota("judged", judged, 100'000);
   CheckWithin("ranking min_screened_score", min_screened_score, 0.0, 1.0);
+  CheckWithin("ranking min_coarse_pixels", min_coarse_pixels, 0.0, 1e6);
   CheckWithin("ranking same_distance", same_distance, 1e-4, 10.0);
   CheckWithin("ranking same_angle", same_angle, 1e-4, 3.2);
 }

@@ -44,6 +44,9 @@ struct RankingParams {
   ModelQuota judged{8, 40, 0.01};
   // Those that a first look finds less probable are not looked at closely; 0 .. 1
   double min_screened_score = 0.003;
+  // .. after a look at every other row and column, where the model spans so many pixels, that gives
+  // up what is ten times less probable still; >= 0
+  double min_coarse_pixels = 40.0;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
   void Validate() const;

@@ -234,5 +234,23 @@ TEST(JudgedModelTest, ThinnedModelsAreCoarserForLargerPixels) {
   EXPECT_EQ(JudgedCrate().sample().points.size(), JudgedCrate().sample().normals.size());
 }
 
+// Every other row and column tells about the same of what is there, of what is not, and of what is
+// hidden.
+TEST(GatherCoarseEvidenceTest, IsAboutThatOfAllPixels) {
+  for (const Scene& room : {Room(true), Room(false), Room(true, true, {Screen()})}) {
+    const Evidence all = GatherEvidence(room, JudgedCrate(), kPose, Params());
+    const Evidence coarse = GatherCoarseEvidence(room, JudgedCrate(), kPose, Params());
+    ExpectSharesAreSound(coarse);
+    EXPECT_TRUE(coarse.explained.empty());
+    for (const int value : {kMatched, kSeenThrough, kOccluded, kMatchedOfKnown, kNormalAgreement,
+                            kUnexplained, kThroughRegion, kRimMean})
+      EXPECT_NEAR(coarse.values[value], all.values[value], 0.1) << value;
+    for (const int value : {kLogMatchedPixels, kLogRenderedPixels})
+      EXPECT_NEAR(coarse.values[value], all.values[value], 0.3) << value;
+    EXPECT_EQ(coarse.values[kSupported], all.values[kSupported]);
+    EXPECT_EQ(coarse.values[kDistance], all.values[kDistance]);
+  }
+}
+
 }  // namespace
 }  // namespace rimod

@@ -104,6 +104,7 @@ const std::vector<RealField>& RealFields() {
       QUOTA(refined, min_score, double, -0.1, 1.1),
       QUOTA(judged, min_score, double, -0.1, 1.1),
       REAL(ranking, min_screened_score, -0.1, 1.1),
+      REAL(ranking, min_coarse_pixels, -1.0, 1e7),
       REAL(ranking, min_tilt, -0.1, 3.3),
       REAL(ranking, max_tilt, -0.1, 3.3),
       REAL(ranking, same_distance, 0.0, -0.1),
