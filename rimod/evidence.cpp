@@ -36,7 +36,7 @@ class Comparison {
     const Eigen::Vector3d centre =
         T_sensor_object * Eigen::Vector3d(0.5 * (model.model().box_min + model.model().box_max));
     distance_ = centre.norm();
-    pixel_size_ = scene.grid().resolution * distance_;
+    pixel_size_ = PixelAngle(scene.grid(), centre) * distance_;
     surface_ = &model.Thinned(pixel_size_);
     rendered_ = RenderModel(*surface_, T_sensor_object, scene.grid());
     fits_.width = rendered_.width;

@@ -121,7 +121,8 @@ std::optional<Eigen::Vector3d> NormalAt(const RangeImage& image, const PixelInde
 
 std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& pixel,
                                      const RangePatchParams& params) {
-  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  const double pixel_angle = PixelAngle(image.grid(), pixel.row, pixel.column);
+  const double spacing = pixel_angle * image.range(pixel.row, pixel.column);
   const double normal_radius = std::max(params.normal_radius, params.normal_pixels * spacing);
   const std::optional<Eigen::Vector3d> normal =
       NormalAt(image, pixel, normal_radius, params.min_points);
@@ -139,7 +140,7 @@ std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& 
   const double reach = params.support_size * std::sqrt(0.5);  // half the square's diagonal
   VisitNeighbourhood(image, pixel, reach, [&](const Eigen::Vector3f& point, int step) {
     const Eigen::Vector3f p_patch = R_patch_sensor * (point - feature.position);
-    const double footprint = 0.5 * step * image.grid().resolution * point.norm();
+    const double footprint = 0.5 * step * pixel_angle * point.norm();
     Splat(p_patch, static_cast<float>(footprint), static_cast<float>(cell), &heights);
   });
   feature.descriptor = ToDescriptor(heights, params.mask_empty_cells);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "rimod/execution.h"
@@ -54,7 +54,7 @@ class Scene {
   Scene(const RangeImage& image, double normal_radius, const Execution& execution);
 
   const RangeImage& image() const { return image_; }
-  const SphericalGrid& grid() const { return image_.grid(); }
+  const PixelGrid& grid() const { return image_.grid(); }
   // Where the points [begin, end) of a piece of surface at a pose (level sensor frame) fall; the
   // others' entries stay.
   void Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
@@ -73,9 +73,15 @@ class Scene {
   const Eigen::Vector3f& normal(int pixel) const { return normals_[pixel]; }
 
  private:
+  void ProjectSpherical(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+                        std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
+  void ProjectPinhole(const PointColumns& points, const Eigen::Isometry3f& T_axis_object,
+                      std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
+
   RangeImage image_;
   PointGrid points_;
-  float azimuth_left_, elevation_top_, pixels_per_radian_;
+  Eigen::Isometry3f T_axis_sensor_;
+  float left_, top_, pixels_per_unit_;  // of image coordinates
   int width_, height_;
   std::vector<float> ranges_;
   std::vector<Eigen::Vector3f> normals_;

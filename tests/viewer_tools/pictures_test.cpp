@@ -13,12 +13,12 @@ constexpr double kResolution = 0.01;  // rad
 // A wall of pixels at 3 m, 100 columns wide and 60 rows high, straight ahead; the sensor stands 1 m
 // high.
 RangeImage MakeWall() {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 100;
   grid.height = 60;
   grid.resolution = kResolution;
-  grid.azimuth_left = 0.5;
-  grid.elevation_top = 0.3;
+  grid.left = 0.5;
+  grid.top = 0.3;
   Eigen::Isometry3d T_local_sensor = Eigen::Isometry3d::Identity();
   T_local_sensor.translation().z() = 1.0;
   RangeImage image(grid, T_local_sensor);
@@ -64,7 +64,7 @@ double Distance(const Colour& a, const Colour& b) {
 }
 
 TEST(RangeImagePictureTest, MeasuredNoReturnAndNeverObservedLookDifferent) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 3;
   grid.height = 1;
   grid.resolution = kResolution;
@@ -175,8 +175,8 @@ TEST(TopViewPictureTest, CeilingsAreLeftOut) {
   const cv::Mat before = DrawTopView(image, {}, "");
   // One reading 2.9 m up, right of everything else drawn there.
   const Eigen::Vector3d p_sensor(2.0, 0.0, 1.9);
-  SphericalGrid grid = image.grid();
-  grid.elevation_top = 0.9;
+  PixelGrid grid = image.grid();
+  grid.top = 0.9;
   grid.height = 120;
   RangeImage taller(grid, image.T_local_sensor());
   for (int row = 0; row < image.height(); ++row)
