@@ -113,6 +113,36 @@ TEST(RangeImagePictureTest, AnObjectColoursItsPixelsAndNoOthers) {
   EXPECT_EQ(At(with, corner), At(without, corner));
 }
 
+TEST(RangeImagePictureTest, PinholeImagesShowObjectsWhereTheyAre) {
+  PixelGrid grid = MakeWall().grid();
+  grid.projection = Projection::kPinhole;
+  RangeImage image(grid, Eigen::Isometry3d::Identity());
+  for (int row = 0; row < image.height(); ++row)
+    for (int column = 0; column < image.width(); ++column)
+      image.SetMeasured(row, column, {4000, 0, 0});
+  const std::vector<ObjectModel> models = {MakePlate()};
+  const std::vector<Detection> detections = {PlateAt(2.5, 0.0, 0.0), PlateAt(-2.5, 0.0, 0.0)};
+  PictureExtras extras;
+  extras.points = {{Eigen::Vector3d(-2.0, 0.1, 0.2)}};
+  const cv::Mat with = DrawRangeImage(image, MakeDrawnObjects(detections, models), "", extras);
+  const cv::Mat without = DrawRangeImage(image, {}, "");
+  const RangeImageLayout layout = LayOutRangeImage(image);
+  const cv::Point2d middle =
+      layout.ToCanvas(Project(image.grid(), Eigen::Vector3d(2.5, 0.03, 0.03)));
+  const Colour expected = Blend(At(without, middle), ObjectColour(0), 0.55);
+  EXPECT_LT(Distance(At(with, middle), expected), 2.0);
+  const cv::Point2d corner = layout.ToCanvas({58.5, 2.5});
+  EXPECT_EQ(At(with, corner), At(without, corner));
+  // The legend tells the projection.
+  RangeImage spherical(MakeWall().grid(), Eigen::Isometry3d::Identity());
+  for (int row = 0; row < image.height(); ++row)
+    for (int column = 0; column < image.width(); ++column)
+      spherical.SetMeasured(row, column, {4000, 0, 0});
+  const cv::Mat other = DrawRangeImage(spherical, {}, "");
+  const cv::Rect below(0, layout.area.br().y, other.cols, other.rows - layout.area.br().y);
+  EXPECT_GT(cv::norm(without(below), other(below)), 100.0);
+}
+
 TEST(RangeImagePictureTest, WhatTheSceneHidesIsNotPainted) {
   const RangeImage image = MakeWall();  // at 3 m
   const std::vector<ObjectModel> models = {MakePlate()};
