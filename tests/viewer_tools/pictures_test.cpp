@@ -121,9 +121,10 @@ TEST(RangeImagePictureTest, PinholeImagesShowObjectsWhereTheyAre) {
     for (int column = 0; column < image.width(); ++column)
       image.SetMeasured(row, column, {4000, 0, 0});
   const std::vector<ObjectModel> models = {MakePlate()};
-  const std::vector<Detection> detections = {PlateAt(2.5, 0.0, 0.0), PlateAt(-2.5, 0.0, 0.0)};
+  const std::vector<Detection> detections = {PlateAt(2.5, 0.0, -0.2), PlateAt(-2.5, 0.0, -0.2)};
   PictureExtras extras;
-  extras.points = {{Eigen::Vector3d(-2.0, 0.1, 0.2)}};
+  extras.points.emplace_back();
+  extras.points.back().p_sensor = Eigen::Vector3d(-2.0, 0.1, 0.2);
   const cv::Mat with = DrawRangeImage(image, MakeDrawnObjects(detections, models), "", extras);
   const cv::Mat without = DrawRangeImage(image, {}, "");
   const RangeImageLayout layout = LayOutRangeImage(image);
