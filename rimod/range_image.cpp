@@ -59,6 +59,17 @@ struct Bounds {
   static constexpr double kNone = 1e6;  // beyond every coordinate
 };
 
+// A grid without pixels yet: the projection and its axis.
+PixelGrid PlaneFor(const Scan& scan, const RangeImageParams& params) {
+  PixelGrid plane;
+  if (params.projection != Projection::kPinhole) return plane;
+  const std::optional<Direction> axis = PinholeAxis(scan, params.min_range);
+  if (!axis) return plane;
+  plane.projection = Projection::kPinhole;
+  plane.axis = *axis;
+  return plane;
+}
+
 // A grid like the given one, with these pixels, that holds what is within the bounds.
 PixelGrid GridFor(PixelGrid grid, const Bounds& bounds, double resolution) {
   grid.resolution = resolution;
@@ -186,12 +197,7 @@ RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
                           const Execution& execution) {
   params.Validate();
   const Eigen::Isometry3d T_sensor_local = scan.T_local_sensor.inverse();
-  PixelGrid plane;  // without pixels yet
-  if (params.projection == Projection::kPinhole) {
-    const std::optional<Direction> axis = PinholeAxis(scan, params.min_range);
-    if (axis) plane.projection = Projection::kPinhole;
-    if (axis) plane.axis = *axis;
-  }
+  const PixelGrid plane = PlaneFor(scan, params);
   Eigen::Isometry3d T_axis_local = T_sensor_local;
   if (plane.projection == Projection::kPinhole) T_axis_local.prerotate(AxisFromSensor(plane));
 
