@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "detector_proc/projection_text.h"
 #include "io/files.h"
 #include "io/model_file.h"
 #include "io/pose_messages.h"
@@ -60,6 +61,10 @@ class Detector {
     timer_.Reset();
     const Clock::time_point begin = Clock::now();
     const RangeImage image = ComputeRangeImage(scan.scan, params_, execution_);
+    if (IsTooWideForPinhole(image, params_.range_image) && !told_too_wide_) {
+      spdlog::warn("{}: {}", scan.name, kTooWideText);
+      told_too_wide_ = true;
+    }
     const FeatureSet features = ExtractFeatures(image, params_, execution_);
     const DetectionResult result = DetectObjects(image, features, database_, params_, execution_);
     const std::chrono::duration<double, std::milli> elapsed = Clock::now() - begin;
@@ -82,6 +87,7 @@ class Detector {
   std::ostream* out_;
   StageTimer timer_;
   Json timing_ = Json::array();
+  bool told_too_wide_ = false;
 };
 
 // Reads one source and detects in its scans; false when something of it could not be read.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "detector_proc/projection_text.h"
 #include "io/cloud_messages.h"
 #include "io/feature_messages.h"
 #include "io/laser_messages.h"
@@ -200,6 +201,7 @@ void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
   execution = StoppableExecution(std::move(execution), &stop_);
 
   const RangeImage image = ComputeRangeImage(scan.scan, params_, execution);
+  TellProjection(image);
   publisher_.PublishAll(channels_.range_image, ToSections(image, scan.utime));
   const FeatureSet features = ExtractFeatures(image, params_, execution);
   publisher_.PublishAll(channels_.features, ToSections(features, scan.utime));
@@ -211,6 +213,15 @@ void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
   status_.CountOut();
   spdlog::info("scan {}: {} points, {} features, {:.0f} ms", scan.utime, scan.scan.points.size(),
                features.features.size(), total.count());
+}
+
+// Once a change.
+void ExtractorProcess::TellProjection(const RangeImage& image) {
+  const bool too_wide = IsTooWideForPinhole(image, params_.range_image);
+  if (too_wide) ++num_too_wide_;
+  if (too_wide == was_too_wide_) return;
+  was_too_wide_ = too_wide;
+  spdlog::warn("{}", too_wide ? kTooWideText : "range images are pinhole images again");
 }
 
 void ExtractorProcess::WorkOnPartial(const StampedScan& scan) {
@@ -238,6 +249,8 @@ void ExtractorProcess::OnIdle() {
   status_.SetSectionCounters("scan", joiner_.counters());
   status_.SetCounter("scans known ahead", num_ahead_);
   status_.SetCounter("partial scans described", num_partial_out_);
+  if (params_.range_image.projection == Projection::kPinhole)
+    status_.SetCounter("scans too wide for a pinhole", num_too_wide_);
   status_.SetCounter("partial scans overtaken", num_partial_overtaken_);
   if (takes_clouds_) ReportClouds();
   status_.SetCounter("unsent messages", publisher_.num_failed());

@@ -25,6 +25,7 @@
 #include "rimod/growing_look.h"
 #include "rimod/growing_scan.h"
 #include "rimod/partial_scan_t.hpp"
+#include "rimod/range_image.h"
 #include "rimod/scan_end_t.hpp"
 
 namespace rimod {
@@ -68,6 +69,7 @@ class ExtractorProcess {
   // In the worker's thread:
   void Work(const Job& job);
   void WorkOnScan(const StampedScan& scan);
+  void TellProjection(const RangeImage& image);
   void WorkOnPartial(const StampedScan& scan);
 
   const Tempo tempo_;
@@ -87,6 +89,8 @@ class ExtractorProcess {
   const std::chrono::milliseconds patience_;
   CloudPlacer placer_;
   bool takes_clouds_ = false;
+  bool was_too_wide_ = false;  // for a pinhole image; only the worker uses it
+  std::atomic<std::int64_t> num_too_wide_{0};
   std::atomic<std::int64_t> num_partial_out_{0};
   std::atomic<std::int64_t> num_partial_overtaken_{0};
   StatusReporter status_;

@@ -28,6 +28,7 @@ struct Options {
   std::string scene, sensor, log, truth;
   double x = 0.0, y = 0.0, height = 1.1, pitch_deg = 15.0;
   std::vector<double> yaws_deg = {0.0};
+  std::vector<double> look_at;  // m, x, y, z in the scene; empty: from x, y
   int seed = 1;
 };
 
@@ -82,6 +83,14 @@ CloudParams Mount(const SensorKind& kind, const Options& options) {
     mount.mount_pitch = options.pitch_deg * kDegree;
   }
   return mount;
+}
+
+// Where the carrier stands when it looks along a yaw (rad).
+Eigen::Vector3d CarrierPosition(const Options& options, double yaw) {
+  if (options.look_at.empty()) return {options.x, options.y, 0.0};
+  const double away = (options.height - options.look_at[2]) / std::tan(options.pitch_deg * kDegree);
+  return {options.look_at[0] - away * std::cos(yaw), options.look_at[1] - away * std::sin(yaw),
+          0.0};
 }
 
 class CloudMaker {
@@ -150,7 +159,7 @@ int Run(const Options& options) {
     carrier.T_local_laser.linear() =
         Eigen::AngleAxisd(options.yaws_deg[i] * kDegree, Eigen::Vector3d::UnitZ())
             .toRotationMatrix();
-    carrier.T_local_laser.translation() = Eigen::Vector3d(options.x, options.y, 0.0);
+    carrier.T_local_laser.translation() = CarrierPosition(options, options.yaws_deg[i] * kDegree);
     std::map<std::size_t, int> hits;
     SensorCloud cloud = maker.Look(carrier.T_local_laser * MountPose(mount), &hits);
     cloud.time = carrier.time;
@@ -189,6 +198,11 @@ int main(int argc, char** argv) {
   app.add_option("--truth", options.truth, "Labels to write, JSON")->required();
   app.add_option("--x", options.x, "m, of the carrier");
   app.add_option("--y", options.y, "m, of the carrier");
+  app.add_option(
+         "--look-at", options.look_at,
+         "m, x, y, z in the scene that is seen in the middle from every yaw, instead of --x "
+         "and --y; with a pitch other than 0")
+      ->expected(3);
   app.add_option("--height", options.height, "m, of the sensor");
   app.add_option("--pitch", options.pitch_deg, "Degrees, > 0 looks down");
   app.add_option("--yaw", options.yaws_deg, "Degrees, a cloud each");

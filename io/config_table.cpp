@@ -41,6 +41,7 @@ Keys ScanKeys(PipelineParams* p) {
       {"cloud", "mount_yaw_deg", DegreesOf{&c.mount_yaw}, "> 0 looks left"},
       {"cloud", "max_pose_gap", &c.max_pose_gap, "s, poses farther apart are not interpolated; 0.001 .. 3600"},
 
+      {"range_image", "projection", Choice(&r.projection, {"spherical", "pinhole"}), "pinhole serves cameras that look steeply down; spherical where they see wider than 60 degrees around the middle"},
       {"range_image", "resolution_deg", DegreesOf{&r.resolution}, "of a pixel (paper: 0.4); 0.06 .. 5.7"},
       {"range_image", "max_resolution_deg", DegreesOf{&r.max_resolution}, "sparser scans get larger pixels, up to this; 0 = never .. 5.7"},
       {"range_image", "min_filled", &r.min_filled, ".. the smallest of which this share is observed beside measured ones; 0 .. 1"},

@@ -140,7 +140,8 @@ void WalkShape<scan_t>(ShapeCursor* cursor) {
 
 template <>
 void WalkShape<range_image_t>(ShapeCursor* cursor) {
-  cursor->Skip(kInt64 + 2 * kInt32 + kPose + 2 * kInt32 + 4 * kDouble + 2 * kInt32);
+  cursor->Skip(kInt64 + 2 * kInt32 + kPose + 2 * kInt32 + 4 * kDouble);
+  cursor->Skip(kInt32 + 2 * kDouble + 2 * kInt32);  // from the projection on
   const std::int32_t num_pixels = cursor->Count();
   cursor->SkipArray(num_pixels, kInt16);
   SkipArrays(cursor, 2, num_pixels, kByte);

@@ -16,6 +16,9 @@ constexpr int kBytesPerPixel = 4;
 static_assert(kHeaderBytes + kMaxRangeImageWidth * kBytesPerPixel <= kMaxMessageBytes,
               "a row fits into a message");
 
+constexpr double kFinestResolution = 1e-5;  // positions in coarser images are small numbers
+constexpr double kWidestTangent = 4.0;      // of a pinhole image's edge: a bit above 75 degrees'
+
 constexpr std::uint16_t kNeverObserved = 0;
 constexpr std::uint16_t kNoReturn = 65535;
 static_assert(PixelRounding::kMaxRangeSteps < kNoReturn, "ranges and marks are told apart");
@@ -29,10 +32,43 @@ void AppendPixel(const RangeImage& image, int row, int column, range_image_t* se
                                                          : kNeverObserved;
   section->range.push_back(static_cast<std::int16_t>(range));
   const bool measured = kind == Pixel::kMeasured;
-  section->offset_azimuth.push_back(measured ? static_cast<std::uint8_t>(rounded.offset_azimuth)
+  section->offset_azimuth.push_back(measured ? static_cast<std::uint8_t>(rounded.offset_left)
                                              : std::uint8_t{0});
-  section->offset_elevation.push_back(measured ? static_cast<std::uint8_t>(rounded.offset_elevation)
+  section->offset_elevation.push_back(measured ? static_cast<std::uint8_t>(rounded.offset_up)
                                                : std::uint8_t{0});
+}
+
+// Empty when the projection is one that we know and fits its axis.
+std::string CheckProjection(const range_image_t& header) {
+  const double azimuth = header.axis_azimuth, elevation = header.axis_elevation;
+  switch (header.projection) {
+    case range_image_t::SPHERICAL:
+      if (!(azimuth == 0.0 && elevation == 0.0)) return "spherical image with an axis";
+      return "";
+    case range_image_t::PINHOLE:
+      if (!(std::abs(azimuth) <= 2.0 * M_PI && std::abs(elevation) <= 0.5001 * M_PI))
+        return "absurd axis";
+      return "";
+    default:
+      return "unknown projection";
+  }
+}
+
+// Empty when the image is not larger than its projection can be.
+std::string CheckExtent(const range_image_t& header) {
+  constexpr double kTurn = 2.0 * M_PI;
+  const bool pinhole = header.projection == range_image_t::PINHOLE;
+  const double widest = pinhole ? 2.0 * kWidestTangent : kTurn;
+  const double highest = pinhole ? 2.0 * kWidestTangent : M_PI;
+  // An image may overlap a full turn by the pixels at its ends.
+  if (static_cast<double>(header.width - 2) * header.resolution > widest ||
+      static_cast<double>(header.height - 2) * header.resolution > highest) {
+    return pinhole ? "image is wider than a pinhole's" : "image is wider than a sphere";
+  }
+  if (!(std::abs(header.azimuth_left) <= 2.0 * kTurn && std::abs(header.elevation_top) <= kTurn)) {
+    return "absurd image edges";
+  }
+  return "";
 }
 
 // Empty when header fields describe an image that we take.
@@ -43,16 +79,10 @@ std::string CheckHeader(const range_image_t& header) {
       width * height > kMaxRangeImagePixels || (width == 0) != (height == 0)) {
     return "absurd image size";
   }
-  constexpr double kTurn = 2.0 * M_PI;
-  if (!(header.resolution > 0.0 && header.resolution < 1.0)) return "absurd resolution";
-  // An image may overlap a full turn by the pixels at its ends.
-  if (static_cast<double>(width - 2) * header.resolution > kTurn ||
-      static_cast<double>(height - 2) * header.resolution > M_PI) {
-    return "image is wider than a sphere";
-  }
-  if (!(std::abs(header.azimuth_left) <= 2.0 * kTurn && std::abs(header.elevation_top) <= kTurn)) {
-    return "absurd image edges";
-  }
+  if (!(header.resolution >= kFinestResolution && header.resolution < 1.0))
+    return "absurd resolution";
+  std::string error = CheckExtent(header);
+  if (!error.empty()) return error;
   if (header.range_unit != PixelRounding::kRangeUnit) return "ranges in another unit than ours";
   return "";
 }
@@ -116,9 +146,13 @@ std::vector<range_image_t> ToSections(const RangeImage& image, std::int64_t utim
   header.width = image.width();
   header.height = image.height();
   header.resolution = image.grid().resolution;
-  header.azimuth_left = image.grid().azimuth_left;
-  header.elevation_top = image.grid().elevation_top;
+  header.azimuth_left = image.grid().left;
+  header.elevation_top = image.grid().top;
   header.range_unit = PixelRounding::kRangeUnit;
+  header.projection = range_image_t::SPHERICAL;
+  if (image.grid().projection == Projection::kPinhole) header.projection = range_image_t::PINHOLE;
+  header.axis_azimuth = image.grid().axis.azimuth;
+  header.axis_elevation = image.grid().axis.elevation;
 
   std::vector<range_image_t> sections(static_cast<std::size_t>(num_sections), header);
   for (int i = 0; i < num_sections; ++i) {
@@ -142,7 +176,9 @@ JoinedRangeImage JoinRangeImageSections(const std::vector<range_image_t>& sectio
   const std::optional<Eigen::Isometry3d> T_local_sensor =
       LevelPoseFrom(first.sensor_position, first.sensor_orientation);
   if (!T_local_sensor) return {std::nullopt, "sensor pose is not a pose"};
-  std::string error = first.width == 0 && first.height == 0 ? "" : CheckHeader(first);
+  std::string error = CheckProjection(first);
+  const bool is_empty = first.width == 0 && first.height == 0;
+  if (error.empty() && !is_empty) error = CheckHeader(first);
   std::int64_t num_rows = 0;
   for (std::size_t i = 0; i < sections.size() && error.empty(); ++i) {
     error = CheckSection(sections[i], first, i, sections.size(), num_rows);
@@ -151,12 +187,14 @@ JoinedRangeImage JoinRangeImageSections(const std::vector<range_image_t>& sectio
   if (error.empty() && num_rows != first.height) error = "rows are missing or there twice";
   if (!error.empty()) return {std::nullopt, std::move(error)};
 
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = first.width;
   grid.height = first.height;
   grid.resolution = first.resolution;
-  grid.azimuth_left = first.azimuth_left;
-  grid.elevation_top = first.elevation_top;
+  grid.left = first.azimuth_left;
+  grid.top = first.elevation_top;
+  if (first.projection == range_image_t::PINHOLE) grid.projection = Projection::kPinhole;
+  grid.axis = {first.axis_azimuth, first.axis_elevation};
   try {
     RangeImage image(grid, *T_local_sensor);
     for (const range_image_t& section : sections) SetPixels(section, &image);

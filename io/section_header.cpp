@@ -28,6 +28,9 @@ range_image_t HeaderOf(const range_image_t& section) {
   header.azimuth_left = section.azimuth_left;
   header.elevation_top = section.elevation_top;
   header.range_unit = section.range_unit;
+  header.projection = section.projection;
+  header.axis_azimuth = section.axis_azimuth;
+  header.axis_elevation = section.axis_elevation;
   return header;
 }
 

@@ -24,10 +24,10 @@ struct Counts {
 };
 
 // The grid whose pixels have their centres where every step-th row and column has them.
-SphericalGrid EveryOther(SphericalGrid grid, int step) {
+PixelGrid EveryOther(PixelGrid grid, int step) {
   const double farther = 0.5 * (step - 1) * grid.resolution;
-  grid.azimuth_left += farther;
-  grid.elevation_top += farther;
+  grid.left += farther;
+  grid.top += farther;
   grid.width = (grid.width + step - 1) / step;
   grid.height = (grid.height + step - 1) / step;
   grid.resolution *= step;
@@ -49,8 +49,8 @@ class Comparison {
     const Eigen::Vector3d centre =
         T_sensor_object * Eigen::Vector3d(0.5 * (model.model().box_min + model.model().box_max));
     distance_ = centre.norm();
-    const SphericalGrid grid = EveryOther(scene.grid(), step);
-    pixel_size_ = grid.resolution * distance_;
+    const PixelGrid grid = EveryOther(scene.grid(), step);
+    pixel_size_ = PixelAngle(grid, centre) * distance_;
     surface_ = &model.Thinned(pixel_size_);
     rendered_ = RenderModel(*surface_, T_sensor_object, grid);
     fits_.width = rendered_.width;

@@ -178,9 +178,9 @@ double ValidatePose(const RangeImage& image, const ObjectModel& model,
   for (int row = 0; row < rendered.height; ++row) {
     for (int column = 0; column < rendered.width; ++column) {
       if (rendered.point(row, column) < 0) continue;
-      const Direction direction = PixelDirection(image.grid(), rendered.first_row + row + 0.5,
-                                                 rendered.first_column + column + 0.5);
-      const Eigen::Vector3d p_sensor = rendered.range(row, column) * UnitVector(direction);
+      const Eigen::Vector3d p_sensor =
+          rendered.range(row, column) * PixelBeam(image.grid(), rendered.first_row + row + 0.5,
+                                                  rendered.first_column + column + 0.5);
       sum += PointScoreInImage(image, p_sensor, params.scoring);
       ++count;
     }

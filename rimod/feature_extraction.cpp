@@ -97,7 +97,8 @@ DescribedPoints DescribePoints(const RangeImage& image,
 
 double DescriptorReach(const RangeImage& image, const PixelIndex& pixel,
                        const PipelineParams& params) {
-  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  const double spacing =
+      PixelAngle(image.grid(), pixel.row, pixel.column) * image.range(pixel.row, pixel.column);
   return params.descriptor == DescriptorType::kSphericalSpin
              ? ReachOf(params.spherical_spin, spacing)
              : ReachOf(params.range_patch, spacing);

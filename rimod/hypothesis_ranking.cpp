@@ -98,8 +98,9 @@ RankingModel MakeRankingModel(const ObjectModel& model) {
 double PixelsAcross(const Scene& scene, const ObjectModel& model,
                     const Eigen::Isometry3d& T_sensor_object) {
   constexpr double kNearest = 1e-3;  // m
-  const double distance = std::max(T_sensor_object.translation().norm(), kNearest);
-  return model.Diameter() / distance / scene.grid().resolution;
+  const Eigen::Vector3d p_sensor = T_sensor_object.translation();
+  const double distance = std::max(p_sensor.norm(), kNearest);
+  return model.Diameter() / distance / PixelAngle(scene.grid(), p_sensor);
 }
 
 int NearestView(const RankingModel& model, const Eigen::Isometry3f& T_sensor_object) {

@@ -9,7 +9,7 @@ namespace rimod {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr float kFar = 1e6f;  // pixels
+constexpr float kFar = 1e6f;  // beyond all image coordinates
 
 // A number of pixels; nothing when it is not whole.
 bool WholePixels(double pixels, int* whole) {
@@ -20,26 +20,33 @@ bool WholePixels(double pixels, int* whole) {
   return std::abs(pixels - *whole) < kRounding;
 }
 
+// Whether grids lay out directions alike, wherever their edges are.
+bool IsSamePlane(const PixelGrid& a, const PixelGrid& b) {
+  return a.resolution == b.resolution && a.projection == b.projection &&
+         a.axis.azimuth == b.axis.azimuth && a.axis.elevation == b.axis.elevation;
+}
+
 bool IsSamePixel(const RangeImage& a, int row_a, int column_a, const RangeImage& b, int row_b,
                  int column_b) {
   const Pixel pixel = a.pixel(row_a, column_a);
   if (pixel != b.pixel(row_b, column_b)) return false;
   if (pixel != Pixel::kMeasured) return true;
   const RoundedPixel first = a.rounded(row_a, column_a), second = b.rounded(row_b, column_b);
-  return first.range == second.range && first.offset_azimuth == second.offset_azimuth &&
-         first.offset_elevation == second.offset_elevation;
+  return first.range == second.range && first.offset_left == second.offset_left &&
+         first.offset_up == second.offset_up;
 }
 
 }  // namespace
 
 ImageChange::ImageChange(const RangeImage& before, const RangeImage& now)
-    : grid_(now.grid()), width_before_(before.width()) {
-  const SphericalGrid& old = before.grid();
-  const bool comparable =
-      old.size() > 0 && grid_.size() > 0 && old.resolution == grid_.resolution &&
-      before.T_local_sensor().matrix() == now.T_local_sensor().matrix() &&
-      WholePixels((grid_.elevation_top - old.elevation_top) / grid_.resolution, &row_shift_) &&
-      WholePixels((grid_.azimuth_left - old.azimuth_left) / grid_.resolution, &column_shift_);
+    : grid_(now.grid()),
+      T_axis_sensor_(AxisFromSensor(grid_).cast<float>()),
+      width_before_(before.width()) {
+  const PixelGrid& old = before.grid();
+  const bool comparable = old.size() > 0 && grid_.size() > 0 && IsSamePlane(old, grid_) &&
+                          before.T_local_sensor().matrix() == now.T_local_sensor().matrix() &&
+                          WholePixels((grid_.top - old.top) / grid_.resolution, &row_shift_) &&
+                          WholePixels((grid_.left - old.left) / grid_.resolution, &column_shift_);
   if (!comparable) return;
   everything_ = false;
   const std::size_t stride = static_cast<std::size_t>(grid_.width) + 1;
@@ -78,49 +85,59 @@ bool ImageChange::TouchesPixels(int row, int column, int reach) const {
 
 bool ImageChange::Touches(const Eigen::Vector3f& centre, float radius) const {
   if (everything_) return true;
-  const double distance = centre.norm();
-  if (!(distance > radius)) return true;  // around the sensor, or not a number
-  const Direction middle = DirectionOf(centre.cast<double>());
-  const double angle = std::asin(radius / distance);
-  const PixelPosition at = ProjectDirection(grid_, middle);
-  const double rows = angle / grid_.resolution;
-  // Meridians converge towards the poles; a sphere over one is all around, and so is one behind.
-  double half_width = kPi;
-  if (std::abs(middle.elevation) + angle < 0.5 * kPi)
-    half_width = std::asin(std::min(std::sin(angle) / std::cos(middle.elevation), 1.0));
-  const bool all_around = std::abs(middle.azimuth) + half_width >= kPi;
-  const double columns = half_width / grid_.resolution;
-  const int first_column = all_around ? 0 : static_cast<int>(std::floor(at.column - columns));
-  const int last_column =
-      all_around ? grid_.width - 1 : static_cast<int>(std::floor(at.column + columns));
-  return CountChanged(static_cast<int>(std::floor(at.row - rows)),
-                      static_cast<int>(std::floor(at.row + rows)), first_column, last_column) > 0;
+  const Eigen::Vector3d p_sensor = centre.cast<double>();
+  const double distance = p_sensor.norm();
+  // Around the sensor, beside what the image can hold, or not a number.
+  if (!(distance > radius) || !CanHold(grid_, p_sensor)) return true;
+  const double sine = radius / distance;
+  const PixelPosition at = Project(grid_, p_sensor);
+  PixelReach reach;
+  bool all_around = false;
+  if (grid_.projection == Projection::kPinhole) {
+    reach = PinholeReach(grid_, CoordinatesAt(grid_, at.row, at.column), sine);
+  } else {
+    const Direction middle = DirectionOf(p_sensor);
+    const double angle = std::asin(sine);
+    // Meridians converge towards the poles; a ball over one is all around, and so is one behind.
+    double half_width = kPi;
+    if (std::abs(middle.elevation) + angle < 0.5 * kPi)
+      half_width = std::asin(std::min(sine / std::cos(middle.elevation), 1.0));
+    all_around = std::abs(middle.azimuth) + half_width >= kPi;
+    reach = {angle / grid_.resolution, half_width / grid_.resolution};
+  }
+  return CountChanged(static_cast<int>(std::floor(at.row - reach.rows)),
+                      static_cast<int>(std::floor(at.row + reach.rows)),
+                      all_around ? 0 : static_cast<int>(std::floor(at.column - reach.columns)),
+                      all_around ? grid_.width - 1
+                                 : static_cast<int>(std::floor(at.column + reach.columns))) > 0;
 }
 
 bool ImageChange::TouchesBox(const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& low,
                              const Eigen::Vector3f& high) const {
   if (everything_ || !T_sensor_object.matrix().allFinite()) return true;
-  const float left = static_cast<float>(grid_.azimuth_left);
-  const float top = static_cast<float>(grid_.elevation_top);
-  const float per_radian = static_cast<float>(1.0 / grid_.resolution);
-  float first_row = kFar, last_row = -kFar, first_column = kFar, last_column = -kFar;
+  const bool pinhole = grid_.projection == Projection::kPinhole;
+  const Eigen::Isometry3f T_axis_object = T_axis_sensor_ * T_sensor_object;
+  float right = kFar, left = -kFar, bottom = kFar, top = -kFar;  // image coordinates
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f p = T_sensor_object * Eigen::Vector3f((corner & 1 ? high : low).x(),
-                                                                (corner & 2 ? high : low).y(),
-                                                                (corner & 4 ? high : low).z());
-    const float row = (top - FastAtan2(p.z(), p.head<2>().norm())) * per_radian;
-    const float column = (left - FastAtan2(p.y(), p.x())) * per_radian;
-    first_row = std::min(first_row, row);
-    last_row = std::max(last_row, row);
-    first_column = std::min(first_column, column);
-    last_column = std::max(last_column, column);
+    const Eigen::Vector3f p = T_axis_object * Eigen::Vector3f((corner & 1 ? high : low).x(),
+                                                              (corner & 2 ? high : low).y(),
+                                                              (corner & 4 ? high : low).z());
+    if (pinhole && !(p.x() > static_cast<float>(kMinPinholeCosine) * p.norm())) return true;
+    const float to_left = pinhole ? p.y() / p.x() : FastAtan2(p.y(), p.x());
+    const float upwards = pinhole ? p.z() / p.x() : FastAtan2(p.z(), p.head<2>().norm());
+    right = std::min(right, to_left);
+    left = std::max(left, to_left);
+    bottom = std::min(bottom, upwards);
+    top = std::max(top, upwards);
   }
   // Half around and more: behind the sensor, where azimuths begin again, or about it.
-  if (last_column - first_column >= static_cast<float>(kPi) * per_radian) return true;
-  return CountChanged(static_cast<int>(std::floor(first_row)),
-                      static_cast<int>(std::floor(last_row)),
-                      static_cast<int>(std::floor(first_column)),
-                      static_cast<int>(std::floor(last_column))) > 0;
+  if (!pinhole && left - right >= static_cast<float>(kPi)) return true;
+  const PixelPosition first = PositionOf(grid_, {left, top});
+  const PixelPosition last = PositionOf(grid_, {right, bottom});
+  return CountChanged(static_cast<int>(std::floor(first.row)),
+                      static_cast<int>(std::floor(last.row)),
+                      static_cast<int>(std::floor(first.column)),
+                      static_cast<int>(std::floor(last.column))) > 0;
 }
 
 std::vector<PixelRun> ImageChange::MovedRuns(const std::vector<PixelRun>& runs) const {

@@ -13,7 +13,7 @@ class ImageChange {
   // Everything is new.
   ImageChange() = default;
   // The images are compared where the earlier one's grid lies in the new one: both must have one
-  // sensor pose and one resolution, their edges whole pixels apart. Else everything is new.
+  // sensor pose, projection and resolution, their edges whole pixels apart. Else everything is new.
   ImageChange(const RangeImage& before, const RangeImage& now);
 
   bool everything() const { return everything_; }
@@ -36,7 +36,8 @@ class ImageChange {
   int CountChanged(int first_row, int last_row, int first_column, int last_column) const;
 
   bool everything_ = true;
-  SphericalGrid grid_;  // of the new image
+  PixelGrid grid_;  // of the new image
+  Eigen::Matrix3f T_axis_sensor_ = Eigen::Matrix3f::Identity();
   int width_before_ = 0;
   int row_shift_ = 0, column_shift_ = 0;
   // How many pixels above and left of each have changed: (height + 1) x (width + 1).

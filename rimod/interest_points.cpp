@@ -94,8 +94,10 @@ bool FallsOff(float before, float range, float after, float jump) {
 float SurfaceChangeAt(const RangeImage& image, int row, int column,
                       const InterestPointParams& params) {
   const float range = image.range(row, column);
-  const int step = std::clamp(
-      static_cast<int>(std::lround(params.bend_step / (image.grid().resolution * range))), 1, 20);
+  const int step =
+      std::clamp(static_cast<int>(std::lround(params.bend_step /
+                                              (PixelAngle(image.grid(), row, column) * range))),
+                 1, 20);
   constexpr std::array<PixelIndex, 4> kLines = {{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
   const float jump = static_cast<float>(params.max_depth_jump);
   float strength = 0.0f;
@@ -179,19 +181,26 @@ class CubeCounter {
   std::map<std::array<int, 3>, int> counts_;
 };
 
+// As far as there may be points within the radius of the chosen pixel's.
+PixelReach SuppressionReach(const RangeImage& image, const PixelIndex& chosen, double radius) {
+  const PixelGrid& grid = image.grid();
+  const Eigen::Vector3d centre = image.point(chosen.row, chosen.column).cast<double>();
+  const double sine = std::min(radius / image.range(chosen.row, chosen.column), 1.0);
+  if (grid.projection == Projection::kPinhole)
+    return PinholeReach(grid, CoordinatesAt(grid, chosen.row + 0.5, chosen.column + 0.5), sine);
+  const double widened = sine / std::max(std::cos(DirectionOf(centre).elevation), 1e-3);
+  return {std::asin(sine) / grid.resolution,
+          std::asin(std::min(widened, 1.0)) / grid.resolution};  // meridians converge
+}
+
 // Marks the pixels around a chosen one whose points lie within the suppression radius.
 void Suppress(const RangeImage& image, const PixelIndex& chosen, double radius,
               std::vector<char>* suppressed) {
   const Eigen::Vector3f& centre = image.point(chosen.row, chosen.column);
-  const double sine = std::min(radius / image.range(chosen.row, chosen.column), 1.0);
-  const double elevation = DirectionOf(centre.cast<double>()).elevation;
-  const auto pixels = [&image](double sine_of_angle) {
-    constexpr int kMostPixels = 60;
-    const double angle = std::asin(std::min(sine_of_angle, 1.0));
-    return std::min(static_cast<int>(angle / image.grid().resolution) + 1, kMostPixels);
-  };
-  const int rows = pixels(sine);
-  const int columns = pixels(sine / std::max(std::cos(elevation), 1e-3));  // meridians converge
+  constexpr int kMostPixels = 60;
+  const PixelReach reach = SuppressionReach(image, chosen, radius);
+  const int rows = std::min(static_cast<int>(reach.rows) + 1, kMostPixels);
+  const int columns = std::min(static_cast<int>(reach.columns) + 1, kMostPixels);
   const float radius_sq = static_cast<float>(radius * radius);
   for (int r = std::max(chosen.row - rows, 0); r <= std::min(chosen.row + rows, image.height() - 1);
        ++r) {

@@ -26,8 +26,8 @@ Eigen::Isometry3d ViewPose(const ObjectModel& model, const Eigen::Vector3d& view
 }
 
 // A grid that holds the ball around the model, with a margin of some pixels.
-SphericalGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_object_sensor,
-                         double resolution) {
+PixelGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_object_sensor,
+                     double resolution) {
   constexpr int kMargin = 4;
   const Eigen::Vector3d centre = T_object_sensor.inverse() * CentreOf(model);
   const double angle = std::asin(std::min(0.5 * model.Diameter() / centre.norm(), 0.9));
@@ -35,12 +35,12 @@ SphericalGrid GridAround(const ObjectModel& model, const Eigen::Isometry3d& T_ob
   const double widening = 1.0 / std::max(std::cos(middle.elevation), 0.2);
   const int half_rows = static_cast<int>(std::ceil(angle / resolution)) + kMargin;
   const int half_columns = static_cast<int>(std::ceil(angle * widening / resolution)) + kMargin;
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.resolution = resolution;
   grid.width = 2 * half_columns;
   grid.height = 2 * half_rows;
-  grid.azimuth_left = middle.azimuth + half_columns * resolution;
-  grid.elevation_top = middle.elevation + half_rows * resolution;
+  grid.left = middle.azimuth + half_columns * resolution;
+  grid.top = middle.elevation + half_rows * resolution;
   return grid;
 }
 
@@ -50,11 +50,11 @@ RoundedPixel CentredPixel(double range) {
   return {static_cast<std::uint16_t>(steps), 0, 0};
 }
 
-// Range (m) of the ground around the model's box in a direction; 0 where there is none.
+// Range (m) of the ground around the model's box along a beam; 0 where there is none.
 double GroundRange(const ObjectModel& model, const Eigen::Isometry3d& T_object_sensor,
-                   double margin, const Direction& direction) {
+                   double margin, const Eigen::Vector3d& beam_sensor) {
   if (margin <= 0.0) return 0.0;
-  const Eigen::Vector3d beam = T_object_sensor.linear() * UnitVector(direction);
+  const Eigen::Vector3d beam = T_object_sensor.linear() * beam_sensor;
   const double height = T_object_sensor.translation().z() - model.box_min.z();
   if (!(beam.z() * height < 0.0)) return 0.0;
   const double range = -height / beam.z();
@@ -83,7 +83,7 @@ std::vector<std::size_t> SpreadIndices(std::size_t size, int count) {
 
 // Points beside the silhouette (sensor frame): pixels exactly gap away from the model along a row
 // or column, at the range of the nearest pixel of the model there.
-std::vector<Eigen::Vector3d> OutsidePoints(const RenderedModel& rendered, const SphericalGrid& grid,
+std::vector<Eigen::Vector3d> OutsidePoints(const RenderedModel& rendered, const PixelGrid& grid,
                                            int gap) {
   const auto range_at = [&](int row, int column) {
     const bool inside = row >= 0 && row < rendered.height && column >= 0 && column < rendered.width;
@@ -103,9 +103,8 @@ std::vector<Eigen::Vector3d> OutsidePoints(const RenderedModel& rendered, const 
         }
       }
       if (too_near || nearest == 0.0f) continue;
-      const Direction direction = PixelDirection(grid, rendered.first_row + row + 0.5,
-                                                 rendered.first_column + column + 0.5);
-      points.push_back(nearest * UnitVector(direction));
+      points.push_back(nearest * PixelBeam(grid, rendered.first_row + row + 0.5,
+                                           rendered.first_column + column + 0.5));
     }
   }
   return points;
@@ -152,13 +151,13 @@ std::vector<Eigen::Vector3d> Viewpoints(const ObjectModel& model, const ModelVie
 RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint, double resolution,
                       double ground_margin) {
   const Eigen::Isometry3d T_object_sensor = ViewPose(model, viewpoint);
-  const SphericalGrid grid = GridAround(model, T_object_sensor, resolution);
+  const PixelGrid grid = GridAround(model, T_object_sensor, resolution);
   const RenderedModel rendered = RenderModel(model, T_object_sensor.inverse(), grid);
   RangeImage image(grid, T_object_sensor);
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       const double range = GroundRange(model, T_object_sensor, ground_margin,
-                                       PixelDirection(grid, row + 0.5, column + 0.5));
+                                       PixelBeam(grid, row + 0.5, column + 0.5));
       if (range > 0.0) {
         image.SetMeasured(row, column, CentredPixel(range));
       } else {
@@ -179,7 +178,7 @@ RangeImage RenderView(const ObjectModel& model, const Eigen::Vector3d& viewpoint
 void SampleViewPoints(const ObjectModel& model, double resolution, const ModelViewParams& params,
                       ModelView* view) {
   const Eigen::Isometry3d T_object_sensor = ViewPose(model, view->viewpoint);
-  const SphericalGrid grid = GridAround(model, T_object_sensor, resolution);
+  const PixelGrid grid = GridAround(model, T_object_sensor, resolution);
   const RenderedModel rendered = RenderModel(model, T_object_sensor.inverse(), grid);
 
   std::vector<int> seen;

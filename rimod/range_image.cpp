@@ -6,6 +6,7 @@
 #include <string>
 
 #include "rimod/check.h"
+#include "rimod/pinhole_axis.h"
 
 namespace rimod {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 constexpr int kMaxPixels = 16'000'000;
 constexpr double kPi = 3.14159265358979323846;
 
-void CheckGrid(const SphericalGrid& grid) {
+void CheckGrid(const PixelGrid& grid) {
   const bool sane_size = grid.width >= 0 && grid.height >= 0 &&
                          static_cast<std::int64_t>(grid.width) * grid.height <= kMaxPixels;
   if (!sane_size) {
@@ -23,13 +24,16 @@ void CheckGrid(const SphericalGrid& grid) {
   if (grid.size() > 0 && !(std::isfinite(grid.resolution) && grid.resolution > 0.0)) {
     throw std::invalid_argument("range image with resolution " + std::to_string(grid.resolution));
   }
-  if (!std::isfinite(grid.azimuth_left) || !std::isfinite(grid.elevation_top)) {
+  if (!std::isfinite(grid.left) || !std::isfinite(grid.top)) {
     throw std::invalid_argument("range image whose edges are not finite");
+  }
+  if (!std::isfinite(grid.axis.azimuth) || !std::isfinite(grid.axis.elevation)) {
+    throw std::invalid_argument("range image whose axis is not finite");
   }
 }
 
 // The sub-pixel part of a position in steps, from the pixel's centre, growing against the index
-// (azimuth and elevation fall with column and row).
+// (image coordinates fall with column and row).
 std::int8_t OffsetSteps(double position, int index) {
   const double steps = (index + 0.5 - position) * PixelRounding::kOffsetSteps;
   return static_cast<std::int8_t>(std::clamp(std::lround(steps), -128L, 127L));
@@ -42,25 +46,38 @@ std::uint16_t RangeSteps(double range) {
 }
 
 struct Bounds {
-  double azimuth_min = kPi, azimuth_max = -kPi;
-  double elevation_min = kPi, elevation_max = -kPi;
-  void Include(const Direction& direction) {
-    azimuth_min = std::min(azimuth_min, direction.azimuth);
-    azimuth_max = std::max(azimuth_max, direction.azimuth);
-    elevation_min = std::min(elevation_min, direction.elevation);
-    elevation_max = std::max(elevation_max, direction.elevation);
+  double left_min = kNone, left_max = -kNone;
+  double up_min = kNone, up_max = -kNone;
+  void Include(const ImageCoordinates& coordinates) {
+    left_min = std::min(left_min, coordinates.left);
+    left_max = std::max(left_max, coordinates.left);
+    up_min = std::min(up_min, coordinates.up);
+    up_max = std::max(up_max, coordinates.up);
   }
-  bool empty() const { return azimuth_min > azimuth_max; }
+  bool empty() const { return left_min > left_max; }
+
+  static constexpr double kNone = 1e6;  // beyond every coordinate
 };
 
-SphericalGrid GridFor(const Bounds& bounds, double resolution) {
-  SphericalGrid grid;
+// A grid without pixels yet: the projection and its axis.
+PixelGrid PlaneFor(const Scan& scan, const RangeImageParams& params) {
+  PixelGrid plane;
+  if (params.projection != Projection::kPinhole) return plane;
+  const std::optional<Direction> axis = PinholeAxis(scan, params.min_range);
+  if (!axis) return plane;
+  plane.projection = Projection::kPinhole;
+  plane.axis = *axis;
+  return plane;
+}
+
+// A grid like the given one, with these pixels, that holds what is within the bounds.
+PixelGrid GridFor(PixelGrid grid, const Bounds& bounds, double resolution) {
   grid.resolution = resolution;
   if (bounds.empty()) return grid;
-  grid.azimuth_left = (std::floor(bounds.azimuth_max / resolution) + 1.0) * resolution;
-  grid.elevation_top = (std::floor(bounds.elevation_max / resolution) + 1.0) * resolution;
+  grid.left = (std::floor(bounds.left_max / resolution) + 1.0) * resolution;
+  grid.top = (std::floor(bounds.up_max / resolution) + 1.0) * resolution;
   // By projecting the last beam, so that one exactly on a pixel's edge falls into the grid too.
-  const PixelPosition last = ProjectDirection(grid, {bounds.azimuth_min, bounds.elevation_min});
+  const PixelPosition last = PositionOf(grid, {bounds.left_min, bounds.up_min});
   grid.width = static_cast<int>(std::floor(last.column)) + 1;
   grid.height = static_cast<int>(std::floor(last.row)) + 1;
   return grid;
@@ -82,37 +99,10 @@ double FilledShare(const RangeImage& image) {
 
 }  // namespace
 
-bool SphericalGrid::operator==(const SphericalGrid& other) const {
-  return width == other.width && height == other.height && resolution == other.resolution &&
-         azimuth_left == other.azimuth_left && elevation_top == other.elevation_top;
-}
-
-Direction DirectionOf(const Eigen::Vector3d& p_sensor) {
-  return {std::atan2(p_sensor.y(), p_sensor.x()),
-          std::atan2(p_sensor.z(), p_sensor.head<2>().norm())};
-}
-
-Eigen::Vector3d UnitVector(const Direction& direction) {
-  const double horizontal = std::cos(direction.elevation);
-  return {horizontal * std::cos(direction.azimuth), horizontal * std::sin(direction.azimuth),
-          std::sin(direction.elevation)};
-}
-
-PixelPosition ProjectDirection(const SphericalGrid& grid, const Direction& direction) {
-  return {(grid.elevation_top - direction.elevation) / grid.resolution,
-          (grid.azimuth_left - direction.azimuth) / grid.resolution};
-}
-
-PixelPosition Project(const SphericalGrid& grid, const Eigen::Vector3d& p_sensor) {
-  return ProjectDirection(grid, DirectionOf(p_sensor));
-}
-
-Direction PixelDirection(const SphericalGrid& grid, double row, double column) {
-  return {grid.azimuth_left - column * grid.resolution, grid.elevation_top - row * grid.resolution};
-}
-
-RangeImage::RangeImage(const SphericalGrid& grid, const Eigen::Isometry3d& T_local_sensor)
-    : grid_(grid), T_local_sensor_(T_local_sensor) {
+RangeImage::RangeImage(const PixelGrid& grid, const Eigen::Isometry3d& T_local_sensor)
+    : grid_(grid),
+      R_sensor_axis_(AxisFromSensor(grid).transpose()),
+      T_local_sensor_(T_local_sensor) {
   CheckGrid(grid);
   const std::size_t size = static_cast<std::size_t>(grid.size());
   ranges_.assign(size, 0.0f);
@@ -130,13 +120,16 @@ Pixel RangeImage::pixel(int row, int column) const {
 void RangeImage::SetMeasured(int row, int column, const RoundedPixel& rounded) {
   const int index = Index(row, column);
   constexpr double kOffsetUnit = 1.0 / PixelRounding::kOffsetSteps;
-  const Direction direction =
-      PixelDirection(grid_, row + 0.5 - rounded.offset_elevation * kOffsetUnit,
-                     column + 0.5 - rounded.offset_azimuth * kOffsetUnit);
+  const ImageCoordinates at = CoordinatesAt(grid_, row + 0.5 - rounded.offset_up * kOffsetUnit,
+                                            column + 0.5 - rounded.offset_left * kOffsetUnit);
+  const Eigen::Vector3d beam =
+      grid_.projection == Projection::kSpherical
+          ? UnitVector({at.left, at.up})
+          : R_sensor_axis_ * Eigen::Vector3d(1.0, at.left, at.up).normalized();
   const double range = rounded.range * PixelRounding::kRangeUnit;
   rounded_[index] = rounded;
   ranges_[index] = static_cast<float>(range);
-  points_[index] = (range * UnitVector(direction)).cast<float>();
+  points_[index] = (range * beam).cast<float>();
   no_return_[index] = 0;
 }
 
@@ -148,12 +141,12 @@ void RangeImage::SetNoReturn(int row, int column) {
   no_return_[index] = 1;
 }
 
-void RangeImage::AddBeams(const std::vector<Direction>& directions,
+void RangeImage::AddBeams(const std::vector<ImageCoordinates>& beams,
                           const std::vector<double>& ranges, const Execution& execution) {
   // z-buffer: the nearest beam of each pixel; only those are worth computing a point for.
   std::vector<RoundedPixel> nearest(rounded_);
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const PixelPosition position = ProjectDirection(grid_, directions[i]);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const PixelPosition position = PositionOf(grid_, beams[i]);
     const int row = static_cast<int>(std::floor(position.row));
     const int column = static_cast<int>(std::floor(position.column));
     if (!grid_.Contains(row, column)) continue;
@@ -171,8 +164,8 @@ void RangeImage::AddBeams(const std::vector<Direction>& directions,
   });
 }
 
-void RangeImage::AddNoReturn(const Direction& direction) {
-  const PixelPosition position = ProjectDirection(grid_, direction);
+void RangeImage::AddNoReturn(const ImageCoordinates& beam) {
+  const PixelPosition position = PositionOf(grid_, beam);
   const int row = static_cast<int>(std::floor(position.row));
   const int column = static_cast<int>(std::floor(position.column));
   if (grid_.Contains(row, column) && !measured(row, column)) SetNoReturn(row, column);
@@ -195,47 +188,56 @@ void RangeImageParams::Validate() const {
   }
 }
 
+bool IsTooWideForPinhole(const RangeImage& image, const RangeImageParams& params) {
+  return params.projection == Projection::kPinhole && image.grid().size() > 0 &&
+         image.grid().projection == Projection::kSpherical;
+}
+
 RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
                           const Execution& execution) {
   params.Validate();
   const Eigen::Isometry3d T_sensor_local = scan.T_local_sensor.inverse();
+  const PixelGrid plane = PlaneFor(scan, params);
+  Eigen::Isometry3d T_axis_local = T_sensor_local;
+  if (plane.projection == Projection::kPinhole) T_axis_local.prerotate(AxisFromSensor(plane));
 
   // Slots by point, range 0 where it does not count; then those that do move together.
   constexpr std::size_t kBatches = 64;
-  std::vector<Direction> directions(scan.points.size());
+  std::vector<ImageCoordinates> beams(scan.points.size());
   std::vector<double> ranges(scan.points.size());
   execution.parallel_for(kBatches, [&](std::size_t batch) {
     const std::size_t end = (batch + 1) * ranges.size() / kBatches;
     for (std::size_t i = batch * ranges.size() / kBatches; i < end; ++i) {
-      const Eigen::Vector3d p_sensor = T_sensor_local * scan.points[i].cast<double>();
-      const double range = p_sensor.norm();
+      const Eigen::Vector3d p_axis = T_axis_local * scan.points[i].cast<double>();
+      const double range = p_axis.norm();
       if (!(range >= params.min_range && range > 0.0)) continue;
       ranges[i] = range;
-      directions[i] = DirectionOf(p_sensor);
+      beams[i] = CoordinatesOf(plane.projection, p_axis);
     }
   });
   Bounds bounds;
   std::size_t count = 0;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (ranges[i] == 0.0) continue;
-    bounds.Include(directions[i]);
+    bounds.Include(beams[i]);
     ranges[count] = ranges[i];
-    directions[count++] = directions[i];
+    beams[count++] = beams[i];
   }
   ranges.resize(count);
-  directions.resize(count);
-  std::vector<Direction> no_returns;
+  beams.resize(count);
+  std::vector<ImageCoordinates> no_returns;
   no_returns.reserve(scan.no_return_directions.size());
   for (const Eigen::Vector3f& beam_local : scan.no_return_directions) {
-    no_returns.push_back(DirectionOf(T_sensor_local.linear() * beam_local.cast<double>()));
+    no_returns.push_back(
+        CoordinatesOf(plane.projection, T_axis_local.linear() * beam_local.cast<double>()));
     bounds.Include(no_returns.back());
   }
 
   constexpr double kStep = 1.25;  // from one resolution to the next
   for (double resolution = params.resolution;; resolution *= kStep) {
-    RangeImage image(GridFor(bounds, resolution), scan.T_local_sensor);
-    image.AddBeams(directions, ranges, execution);
-    for (const Direction& direction : no_returns) image.AddNoReturn(direction);
+    RangeImage image(GridFor(plane, bounds, resolution), scan.T_local_sensor);
+    image.AddBeams(beams, ranges, execution);
+    for (const ImageCoordinates& beam : no_returns) image.AddNoReturn(beam);
     const bool coarsest = resolution * kStep > params.max_resolution;
     if (coarsest || FilledShare(image) >= params.min_filled) return image;
   }

@@ -5,34 +5,13 @@
 #include <vector>
 
 #include "rimod/execution.h"
+#include "rimod/pixel_grid.h"
 #include "rimod/scan.h"
 
 namespace rimod {
 
 // What a pixel of a range image knows.
 enum class Pixel : std::uint8_t { kNeverObserved, kNoReturn, kMeasured };
-
-struct Direction {
-  double azimuth = 0.0;    // rad, from x towards y (left)
-  double elevation = 0.0;  // rad, upwards from the horizontal plane
-};
-
-// Where the pixels of a spherical range image look, in the level sensor frame; docs/conventions.md.
-// The centre of pixel (row, column) looks along azimuth_left - (column + 0.5) * resolution,
-// elevation_top - (row + 0.5) * resolution.
-struct SphericalGrid {
-  int width = 0;               // columns
-  int height = 0;              // rows
-  double resolution = 0.0;     // rad per pixel, > 0
-  double azimuth_left = 0.0;   // rad, left edge of column 0
-  double elevation_top = 0.0;  // rad, upper edge of row 0
-
-  int size() const { return width * height; }
-  bool Contains(int row, int column) const {
-    return row >= 0 && row < height && column >= 0 && column < width;
-  }
-  bool operator==(const SphericalGrid& other) const;
-};
 
 // Steps in which range images keep their values, so that a message holds the very same ones.
 struct PixelRounding {
@@ -43,9 +22,9 @@ struct PixelRounding {
 
 // One measured pixel in its rounded form.
 struct RoundedPixel {
-  std::uint16_t range = 0;         // in kRangeUnit, 1 .. kMaxRangeSteps
-  std::int8_t offset_azimuth = 0;  // in 1 / kOffsetSteps of the resolution, from the pixel's centre
-  std::int8_t offset_elevation = 0;
+  std::uint16_t range = 0;      // in kRangeUnit, 1 .. kMaxRangeSteps
+  std::int8_t offset_left = 0;  // in 1 / kOffsetSteps of the resolution, from the pixel's centre
+  std::int8_t offset_up = 0;
 };
 
 // A range image (paper, section III-A): per pixel the nearest point measured in its direction.
@@ -55,10 +34,10 @@ class RangeImage {
  public:
   RangeImage() = default;
   // All pixels never observed. Throws std::invalid_argument for a grid with a negative or absurd
-  // size (over 16 million pixels) or resolution.
-  RangeImage(const SphericalGrid& grid, const Eigen::Isometry3d& T_local_sensor);
+  // size (over 16 million pixels), resolution, edge or axis.
+  RangeImage(const PixelGrid& grid, const Eigen::Isometry3d& T_local_sensor);
 
-  const SphericalGrid& grid() const { return grid_; }
+  const PixelGrid& grid() const { return grid_; }
   int width() const { return grid_.width; }
   int height() const { return grid_.height; }
   // Level sensor frame to local frame.
@@ -74,19 +53,20 @@ class RangeImage {
 
   void SetMeasured(int row, int column, const RoundedPixel& rounded);
   void SetNoReturn(int row, int column);
-  // Keeps the nearer of the pixel's point and each beam's (z-buffer); one range (m) a direction.
-  // Directions outside the grid are left out.
-  void AddBeams(const std::vector<Direction>& directions, const std::vector<double>& ranges,
+  // Keeps the nearer of the pixel's point and each beam's (z-buffer); one range (m) a beam. Beams
+  // outside the grid are left out.
+  void AddBeams(const std::vector<ImageCoordinates>& beams, const std::vector<double>& ranges,
                 const Execution& execution = {});
   // Marks a pixel in which nothing is measured.
-  void AddNoReturn(const Direction& direction);
+  void AddNoReturn(const ImageCoordinates& beam);
 
   int CountMeasured() const;
 
  private:
   int Index(int row, int column) const { return row * grid_.width + column; }
 
-  SphericalGrid grid_;
+  PixelGrid grid_;
+  Eigen::Matrix3d R_sensor_axis_ = Eigen::Matrix3d::Identity();  // of a pinhole grid
   Eigen::Isometry3d T_local_sensor_ = Eigen::Isometry3d::Identity();
   std::vector<float> ranges_;
   std::vector<Eigen::Vector3f> points_;
@@ -94,28 +74,18 @@ class RangeImage {
   std::vector<std::uint8_t> no_return_;
 };
 
-// Direction of a point in the level sensor frame; p must not be zero.
-Direction DirectionOf(const Eigen::Vector3d& p_sensor);
-// Unit vector of a direction.
-Eigen::Vector3d UnitVector(const Direction& direction);
-
 // Neighbouring pixels by index, row after row.
 struct PixelRun {
   int first = 0;
   int count = 0;
 };
 
-struct PixelPosition {
-  double row = 0.0;  // pixel centres at k + 0.5: floor gives the index
-  double column = 0.0;
-};
-PixelPosition ProjectDirection(const SphericalGrid& grid, const Direction& direction);
-PixelPosition Project(const SphericalGrid& grid, const Eigen::Vector3d& p_sensor);
-Direction PixelDirection(const SphericalGrid& grid, double row, double column);
-
 struct RangeImageParams {
-  double resolution =
-      0.00698131700797732;  // rad per pixel (0.4 deg, paper section V); 0.001 .. 0.1
+  // Pinhole: about the middle of the field of view, in whole degrees; spherical where a beam is
+  // more than 60 degrees away from it.
+  Projection projection = Projection::kSpherical;
+  // rad per pixel (0.4 deg, paper section V), pinhole on the axis; 0.001 .. 0.1
+  double resolution = 0.00698131700797732;
   // rad; scans too sparse for that get larger pixels, up to this: the smallest of which min_filled
   // is observed. 0 .. 0.1, up to resolution: never
   double max_resolution = 0.0;
@@ -124,9 +94,13 @@ struct RangeImageParams {
   void Validate() const;
 };
 
+// Whether an image is spherical because the scan's field of view is too wide for the pinhole image
+// that was asked for.
+bool IsTooWideForPinhole(const RangeImage& image, const RangeImageParams& params);
+
 // The z-buffered range image of a scan from its sensor position; the grid is the smallest that
 // holds all points and no-return beams, its edges at whole multiples of the resolution. An empty
-// scan gives an image of size 0.
+// scan gives an image of size 0. The image's grid tells its projection.
 RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
                           const Execution& execution = {});
 

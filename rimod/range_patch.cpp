@@ -133,7 +133,8 @@ double ReachOf(const RangePatchParams& params, double spacing) {
 
 std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& pixel,
                                      const RangePatchParams& params) {
-  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  const double pixel_angle = PixelAngle(image.grid(), pixel.row, pixel.column);
+  const double spacing = pixel_angle * image.range(pixel.row, pixel.column);
   const std::optional<Eigen::Vector3d> normal =
       NormalAt(image, pixel, NormalRadius(params, spacing), params.min_points);
   if (!normal) return std::nullopt;
@@ -150,7 +151,7 @@ std::optional<Feature> DescribePatch(const RangeImage& image, const PixelIndex& 
   VisitNeighbourhood(
       image, pixel, HalfDiagonal(params), [&](const Eigen::Vector3f& point, int step) {
         const Eigen::Vector3f p_patch = R_patch_sensor * (point - feature.position);
-        const double footprint = 0.5 * step * image.grid().resolution * point.norm();
+        const double footprint = 0.5 * step * pixel_angle * point.norm();
         Splat(p_patch, static_cast<float>(footprint), static_cast<float>(cell), &heights);
       });
   feature.descriptor = ToDescriptor(heights, params.mask_empty_cells);

@@ -60,7 +60,8 @@ Eigen::Vector3f NormalOf(const RangeImage& image, const PointGrid& points, int r
   constexpr int kMostAcross = 2 * PointGrid::kMargin + 1;
   constexpr float kMinPoints = 5.0f;
   const Eigen::Vector3f& centre = image.point(row, column);
-  const float pixel = static_cast<float>(image.grid().resolution) * image.range(row, column);
+  const float pixel =
+      static_cast<float>(PixelAngle(image.grid(), row, column)) * image.range(row, column);
   const int reach = std::clamp(static_cast<int>(radius / pixel), 1, PointGrid::kMargin);
   const int step = std::max(1, reach / kSamples);
   const float radius_sq = std::max(radius * radius, 8.0f * pixel * pixel);
@@ -133,10 +134,11 @@ Scene::Scene(const RangeImage& image, double normal_radius, const Execution& exe
 Scene::Scene(const RangeImage& image)
     : image_(image),
       points_(image),
-      azimuth_left_(static_cast<float>(image.grid().azimuth_left)),
-      elevation_top_(static_cast<float>(image.grid().elevation_top)),
-      pixels_per_radian_(image.grid().size() > 0 ? static_cast<float>(1.0 / image.grid().resolution)
-                                                 : 0.0f),
+      T_axis_sensor_(Eigen::Matrix3f(AxisFromSensor(image.grid()).cast<float>())),
+      left_(static_cast<float>(image.grid().left)),
+      top_(static_cast<float>(image.grid().top)),
+      pixels_per_unit_(image.grid().size() > 0 ? static_cast<float>(1.0 / image.grid().resolution)
+                                               : 0.0f),
       width_(image.width()),
       height_(image.height()),
       ranges_(static_cast<std::size_t>(image.grid().size()), 0.0f),
@@ -162,11 +164,21 @@ void Scene::FillPixels(double normal_radius, const Execution& execution, const S
   });
 }
 
-RIMOD_WIDE_LOOPS void Scene::Project(const PointColumns& points,
-                                     const Eigen::Isometry3f& T_sensor_object, std::size_t begin,
-                                     std::size_t end, ProjectedPoints* projected) const {
+void Scene::Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+                    std::size_t begin, std::size_t end, ProjectedPoints* projected) const {
   projected->pixels.resize(std::max(projected->pixels.size(), end));
   projected->ranges.resize(projected->pixels.size());
+  if (grid().projection == Projection::kPinhole) {
+    ProjectPinhole(points, T_axis_sensor_ * T_sensor_object, begin, end, projected);
+  } else {
+    ProjectSpherical(points, T_sensor_object, begin, end, projected);
+  }
+}
+
+RIMOD_WIDE_LOOPS void Scene::ProjectSpherical(const PointColumns& points,
+                                              const Eigen::Isometry3f& T_sensor_object,
+                                              std::size_t begin, std::size_t end,
+                                              ProjectedPoints* projected) const {
   const Eigen::Matrix3f R = T_sensor_object.linear();
   const Eigen::Vector3f t = T_sensor_object.translation();
   const float* const px = points.x.data();
@@ -181,10 +193,39 @@ RIMOD_WIDE_LOOPS void Scene::Project(const PointColumns& points,
     const float z = R(2, 0) * px[i] + R(2, 1) * py[i] + R(2, 2) * pz[i] + t.z();
     const float horizontal_sq = x * x + y * y;
     ranges[i] = std::sqrt(horizontal_sq + z * z);
-    const float column = (azimuth_left_ - FastAtan2(y, x)) * pixels_per_radian_;
-    const float row =
-        (elevation_top_ - FastAtan2(z, std::sqrt(horizontal_sq))) * pixels_per_radian_;
+    const float column = (left_ - FastAtan2(y, x)) * pixels_per_unit_;
+    const float row = (top_ - FastAtan2(z, std::sqrt(horizontal_sq))) * pixels_per_unit_;
     const bool inside = (row >= 0.0f) & (row < height) & (column >= 0.0f) & (column < width);
+    const int r = static_cast<int>(inside ? row : 0.0f);
+    const int c = static_cast<int>(inside ? column : 0.0f);
+    pixels[i] = inside ? r * width_ + c : -1;
+  }
+}
+
+RIMOD_WIDE_LOOPS void Scene::ProjectPinhole(const PointColumns& points,
+                                            const Eigen::Isometry3f& T_axis_object,
+                                            std::size_t begin, std::size_t end,
+                                            ProjectedPoints* projected) const {
+  constexpr float kMinCosine = static_cast<float>(kMinPinholeCosine), kTiny = 1e-30f;
+  const Eigen::Matrix3f R = T_axis_object.linear();
+  const Eigen::Vector3f t = T_axis_object.translation();
+  const float* const px = points.x.data();
+  const float* const py = points.y.data();
+  const float* const pz = points.z.data();
+  int* const pixels = projected->pixels.data();
+  float* const ranges = projected->ranges.data();
+  const float height = static_cast<float>(height_), width = static_cast<float>(width_);
+  for (std::size_t i = begin; i < end; ++i) {
+    const float x = R(0, 0) * px[i] + R(0, 1) * py[i] + R(0, 2) * pz[i] + t.x();
+    const float y = R(1, 0) * px[i] + R(1, 1) * py[i] + R(1, 2) * pz[i] + t.y();
+    const float z = R(2, 0) * px[i] + R(2, 1) * py[i] + R(2, 2) * pz[i] + t.z();
+    const float range = std::sqrt(x * x + y * y + z * z);
+    ranges[i] = range;
+    const float per_depth = 1.0f / (x > kTiny ? x : kTiny);
+    const float column = (left_ - y * per_depth) * pixels_per_unit_;
+    const float row = (top_ - z * per_depth) * pixels_per_unit_;
+    const bool inside = (x > kMinCosine * range) & (row >= 0.0f) & (row < height) &
+                        (column >= 0.0f) & (column < width);
     const int r = static_cast<int>(inside ? row : 0.0f);
     const int c = static_cast<int>(inside ? column : 0.0f);
     pixels[i] = inside ? r * width_ + c : -1;

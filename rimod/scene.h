@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "rimod/execution.h"
@@ -59,7 +59,7 @@ class Scene {
         const Scene& before, const ImageChange& change);
 
   const RangeImage& image() const { return image_; }
-  const SphericalGrid& grid() const { return image_.grid(); }
+  const PixelGrid& grid() const { return image_.grid(); }
   // Where the points [begin, end) of a piece of surface at a pose (level sensor frame) fall; the
   // others' entries stay.
   void Project(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
@@ -81,10 +81,15 @@ class Scene {
   explicit Scene(const RangeImage& image);  // without ranges and normals
   void FillPixels(double normal_radius, const Execution& execution, const Scene* before,
                   const ImageChange& change);
+  void ProjectSpherical(const PointColumns& points, const Eigen::Isometry3f& T_sensor_object,
+                        std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
+  void ProjectPinhole(const PointColumns& points, const Eigen::Isometry3f& T_axis_object,
+                      std::size_t begin, std::size_t end, ProjectedPoints* projected) const;
 
   RangeImage image_;
   PointGrid points_;
-  float azimuth_left_, elevation_top_, pixels_per_radian_;
+  Eigen::Isometry3f T_axis_sensor_;
+  float left_, top_, pixels_per_unit_;  // of image coordinates
   int width_, height_;
   std::vector<float> ranges_;
   std::vector<Eigen::Vector3f> normals_;

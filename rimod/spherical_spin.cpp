@@ -117,7 +117,8 @@ SphericalSpinDescriber::SphericalSpinDescriber(const SphericalSpinParams& params
 
 std::optional<Feature> SphericalSpinDescriber::operator()(const RangeImage& image,
                                                           const PixelIndex& pixel) const {
-  const double spacing = image.grid().resolution * image.range(pixel.row, pixel.column);
+  const double spacing =
+      PixelAngle(image.grid(), pixel.row, pixel.column) * image.range(pixel.row, pixel.column);
   const double normal_radius = std::max(params_.normal_radius, params_.normal_pixels * spacing);
   const std::optional<Eigen::Vector3d> normal =
       NormalAt(image, pixel, normal_radius, params_.min_points);

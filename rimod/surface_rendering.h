@@ -25,6 +25,6 @@ struct RenderedModel {
 // Renders a model's surface points as discs facing along their normals, z-buffered; points that
 // face away are not seen. Ranges are those of the surface at the pixels' centres.
 RenderedModel RenderModel(const ObjectModel& model, const Eigen::Isometry3d& T_sensor_object,
-                          const SphericalGrid& grid);
+                          const PixelGrid& grid);
 
 }  // namespace rimod

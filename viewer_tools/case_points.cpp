@@ -18,7 +18,7 @@ const cv::Scalar kTextColour(230, 230, 230);
 
 // A view of the place along a direction, orthographic; canvas x along right, canvas y down along
 // the negative of up.
-struct Projection {
+struct DrawingPlane {
   Eigen::Vector3d centre;  // m, local frame
   Eigen::Vector3d right, up;
   double pixels_per_metre = 100.0;
@@ -39,7 +39,7 @@ void PutDot(const cv::Point& at, int size, const cv::Scalar& colour, cv::Mat* pi
 }
 
 // Where a model's points fall.
-cv::Mat_<unsigned char> MaskOf(const CasePose& pose, const Projection& projection) {
+cv::Mat_<unsigned char> MaskOf(const CasePose& pose, const DrawingPlane& projection) {
   cv::Mat_<unsigned char> mask(kSide, kSide, static_cast<unsigned char>(0));
   const int size =
       std::max(2, cvRound(pose.model->point_spacing * projection.pixels_per_metre) + 1);
@@ -54,7 +54,7 @@ cv::Mat_<unsigned char> MaskOf(const CasePose& pose, const Projection& projectio
 
 // The models, and over them the measured points within radius (m) of the centre.
 cv::Mat DrawPoints(const RangeImage& image, const std::vector<CasePose>& poses,
-                   const Projection& projection, double radius) {
+                   const DrawingPlane& projection, double radius) {
   cv::Mat picture(kSide, kSide, CV_8UC3, kAreaColour);
   constexpr double kOpacity = 0.35;
   for (std::size_t i = poses.size(); i-- > 0;) {
@@ -87,7 +87,7 @@ std::vector<cv::Mat> DrawCasePoints(const RangeImage& image, const std::vector<C
   const CasePose& first = poses.front();
   const ObjectModel& model = *first.model;
   const double radius = std::max(0.25, 0.5 * model.Diameter() + 0.1);  // m
-  Projection projection;
+  DrawingPlane projection;
   projection.centre = first.T_local_object * Eigen::Vector3d(0.5 * (model.box_min + model.box_max));
   Eigen::Vector3d sight = projection.centre - image.T_local_sensor().translation();
   sight.z() = 0.0;

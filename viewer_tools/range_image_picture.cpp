@@ -96,8 +96,8 @@ std::vector<Splat> ProjectSurface(const RangeImage& image, const RangeImageLayou
     if (range < 1e-3 || normal.dot(p_sensor) > 0.0) continue;
     const cv::Point2d centre = layout.ToCanvas(Project(image.grid(), p_sensor));
     if (!layout.area.contains(cv::Point(centre))) continue;
-    const double size =
-        model.point_spacing / range / image.grid().resolution * layout.scale;  // canvas pixels
+    const double size = model.point_spacing / range / PixelAngle(image.grid(), p_sensor) *
+                        layout.scale;  // canvas pixels
     splats.push_back({cv::Point(centre), std::clamp(static_cast<int>(size / 2), 1, 6), range});
   }
   return splats;
@@ -149,7 +149,7 @@ std::vector<std::vector<cv::Point>> ProjectEdges(const RangeImage& image,
         const double share = static_cast<double>(step) / kSteps;
         const Eigen::Vector3d p_sensor =
             T_sensor_local * (corners[a] * (1.0 - share) + corners[a | bit] * share);
-        if (p_sensor.norm() < 1e-3) continue;
+        if (p_sensor.norm() < 1e-3 || !CanHold(image.grid(), p_sensor)) continue;
         const cv::Point p(layout.ToCanvas(Project(image.grid(), p_sensor)));
         // A jump across the image is where the azimuth wraps behind the sensor.
         if (!line.empty() && std::abs(p.x - line.back().x) > half_width) break;
@@ -197,7 +197,7 @@ void DrawPoints(const RangeImage& image, const RangeImageLayout& layout,
                 const std::vector<MarkedPoint>& points, cv::Mat* canvas) {
   cv::Mat area = (*canvas)(layout.area);
   for (const MarkedPoint& point : points) {
-    if (point.p_sensor.norm() < 1e-3) continue;
+    if (point.p_sensor.norm() < 1e-3 || !CanHold(image.grid(), point.p_sensor)) continue;
     const cv::Point at =
         cv::Point(layout.ToCanvas(Project(image.grid(), point.p_sensor))) - layout.area.tl();
     const int radius = point.large ? 3 : 1;  // canvas pixels
@@ -206,12 +206,15 @@ void DrawPoints(const RangeImage& image, const RangeImageLayout& layout,
   }
 }
 
-void DrawAzimuths(const SphericalGrid& grid, const RangeImageLayout& layout, cv::Mat* canvas) {
-  constexpr int kStepDeg = 30;
+// Azimuths; of a pinhole image angles to the left of its axis.
+void DrawAngles(const PixelGrid& grid, const RangeImageLayout& layout, cv::Mat* canvas) {
   constexpr double kRadPerDeg = M_PI / 180.0;
+  const bool is_pinhole = grid.projection == Projection::kPinhole;
+  const int most_deg = is_pinhole ? 70 : 360, step_deg = is_pinhole ? 10 : 30;
   int last_right = -1;
-  for (int deg = 360; deg >= -360; deg -= kStepDeg) {
-    const double column = (grid.azimuth_left - deg * kRadPerDeg) / grid.resolution;
+  for (int deg = most_deg; deg >= -most_deg; deg -= step_deg) {
+    const double coordinate = is_pinhole ? std::tan(deg * kRadPerDeg) : deg * kRadPerDeg;
+    const double column = (grid.left - coordinate) / grid.resolution;
     if (column < 0.0 || column > grid.width) continue;
     const int x = layout.area.x + static_cast<int>(column * layout.scale);
     cv::line(*canvas, {x, layout.area.br().y}, {x, layout.area.br().y + 5}, kTextColour, 1);
@@ -235,7 +238,18 @@ int DrawSwatch(cv::Mat* canvas, int x, int y, int width, const std::string& text
   return x + width + TextSize(text).width + 16;
 }
 
-void DrawLegend(const RangeSpan& span, const RangeImageLayout& layout, cv::Mat* canvas) {
+std::string AnglesText(const PixelGrid& grid) {
+  if (grid.projection == Projection::kSpherical) return "azimuth in degrees, left is +";
+  constexpr double kDegPerRad = 180.0 / M_PI;
+  char text[96];
+  std::snprintf(text, sizeof(text),
+                "pinhole: degrees left of its axis (azimuth %+.0f, elevation %+.0f)",
+                grid.axis.azimuth * kDegPerRad, grid.axis.elevation * kDegPerRad);
+  return text;
+}
+
+void DrawLegend(const RangeSpan& span, const PixelGrid& grid, const RangeImageLayout& layout,
+                cv::Mat* canvas) {
   const int y = layout.canvas.height - kBorder - 18;
   constexpr int kBarWidth = 160;
   char near[32];
@@ -249,7 +263,7 @@ void DrawLegend(const RangeSpan& span, const RangeImageLayout& layout, cv::Mat* 
   x = DrawSwatch(canvas, x, y, 24, "no return", [](int, int) { return NoReturnColour(); });
   x = DrawSwatch(canvas, x, y, 24, "never observed",
                  [](int dx, int dy) { return NeverObservedColour(dx, dy); });
-  DrawText(canvas, "azimuth in degrees, left is +", {x, y - 2}, kTextColour);
+  DrawText(canvas, AnglesText(grid), {x, y - 2}, kTextColour);
 }
 
 }  // namespace
@@ -291,8 +305,8 @@ cv::Mat DrawRangeImage(const RangeImage& image, const std::vector<DrawnObject>& 
   }
   for (std::size_t i = 0; i < objects.size(); ++i)
     DrawLabel(&canvas, &placer, objects[i].label, boxes[i], ToScalar(objects[i].colour));
-  DrawAzimuths(image.grid(), layout, &canvas);
-  DrawLegend(span, layout, &canvas);
+  DrawAngles(image.grid(), layout, &canvas);
+  DrawLegend(span, image.grid(), layout, &canvas);
   return canvas;
 }
 

@@ -48,13 +48,15 @@ class RandomValues {
     return scan;
   }
 
-  RangeImage AnImage(int width, int height) {
-    SphericalGrid grid;
+  RangeImage AnImage(int width, int height, Projection projection = Projection::kSpherical) {
+    PixelGrid grid;
     grid.width = width;
     grid.height = height;
     grid.resolution = 0.007;
-    grid.azimuth_left = Between(0.5, 1.5);
-    grid.elevation_top = Between(0.1, 1.0);
+    grid.left = Between(0.5, 1.5);
+    grid.top = Between(0.1, 1.0);
+    grid.projection = projection;
+    if (projection == Projection::kPinhole) grid.axis = {Between(-3.0, 3.0), Between(-1.5, 1.5)};
     RangeImage image(grid, Level());
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {

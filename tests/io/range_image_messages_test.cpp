@@ -49,6 +49,18 @@ TEST(RangeImageMessagesTest, ImagesOfAnySizeComeBackBitForBit) {
   }
 }
 
+TEST(RangeImageMessagesTest, PinholeImagesComeBackBitForBit) {
+  RandomValues random(2);
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(320, 240), std::pair(3, 440)}) {
+    const RangeImage image = random.AnImage(width, height, Projection::kPinhole);
+    const std::vector<range_image_t> sections = ToSections(image, 7);
+    EXPECT_EQ(sections[0].projection, range_image_t::PINHOLE);
+    const JoinedRangeImage joined = JoinRangeImageSections(ThroughBytes(sections, kSectionBytes));
+    ASSERT_TRUE(joined.image) << joined.error;
+    ExpectEqual(*joined.image, image);
+  }
+}
+
 TEST(RangeImageMessagesTest, AnImageOfSizeZeroComesBack) {
   const std::vector<range_image_t> sections = ToSections(RangeImage(), 5);
   ASSERT_EQ(sections.size(), 1u);
@@ -60,11 +72,11 @@ TEST(RangeImageMessagesTest, AnImageOfSizeZeroComesBack) {
 }
 
 TEST(RangeImageMessagesTest, TheWidestRowFitsIntoAMessage) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = kMaxRangeImageWidth;
   grid.height = 2;
   grid.resolution = 2.0 * M_PI / kMaxRangeImageWidth;
-  grid.azimuth_left = M_PI;
+  grid.left = M_PI;
   const RangeImage image(grid, Eigen::Isometry3d::Identity());
   const JoinedRangeImage joined =
       JoinRangeImageSections(ThroughBytes(ToSections(image, 0), kMaxMessageBytes));
@@ -164,6 +176,45 @@ TEST_F(BadRangeImageTest, WiderThanASphere) {
 TEST_F(BadRangeImageTest, EdgeNotFinite) {
   ChangeAll([](range_image_t* s) { s->elevation_top = std::numeric_limits<double>::infinity(); });
   ExpectRejected("absurd image edges");
+}
+TEST_F(BadRangeImageTest, ResolutionTiny) {
+  ChangeAll([](range_image_t* s) { s->resolution = 1e-300; });
+  ExpectRejected("absurd resolution");
+}
+TEST_F(BadRangeImageTest, UnknownProjection) {
+  ChangeAll([](range_image_t* s) { s->projection = 2; });
+  ExpectRejected("unknown projection");
+  ChangeAll([](range_image_t* s) { s->projection = -1; });
+  ExpectRejected("unknown projection");
+}
+TEST_F(BadRangeImageTest, SphericalWithAnAxis) {
+  ChangeAll([](range_image_t* s) { s->axis_elevation = -0.1; });
+  ExpectRejected("spherical image with an axis");
+}
+TEST_F(BadRangeImageTest, AxisAbsurd) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -7.0}) {
+    for (double range_image_t::*field :
+         {&range_image_t::axis_azimuth, &range_image_t::axis_elevation}) {
+      ChangeAll([&](range_image_t* s) {
+        s->projection = range_image_t::PINHOLE;
+        s->axis_azimuth = s->axis_elevation = 0.0;
+        s->*field = value;
+      });
+      ExpectRejected("absurd axis");
+    }
+  }
+}
+TEST_F(BadRangeImageTest, SectionsOfTwoProjections) {
+  bad_.back().projection = range_image_t::PINHOLE;
+  ExpectRejected("sections are of different images");
+}
+TEST_F(BadRangeImageTest, WiderThanAPinholes) {
+  ChangeAll([](range_image_t* s) {
+    s->projection = range_image_t::PINHOLE;
+    s->resolution = 0.1;
+  });
+  ExpectRejected("image is wider than a pinhole's");
 }
 TEST_F(BadRangeImageTest, SensorPoseNotFinite) {
   ChangeAll(

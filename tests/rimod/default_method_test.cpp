@@ -45,8 +45,8 @@ class ChooseCandidatesTest : public testing::Test {
         database_({BoxModel("a", {0.6, 0.6, 0.6}, 0.05), BoxModel("b", {0.6, 0.6, 0.6}, 0.05)},
                   Params(), Execution{}) {}
 
-  static SphericalGrid Grid() {
-    SphericalGrid grid;
+  static PixelGrid Grid() {
+    PixelGrid grid;
     grid.width = 100;
     grid.height = 10;
     grid.resolution = 0.01;

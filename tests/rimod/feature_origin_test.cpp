@@ -23,11 +23,11 @@ TEST(FeatureOriginTest, PointsOfAnyImageAreItsOwn) {
 // Where the azimuth jumps from -180 to 180 degrees.
 TEST(FeatureOriginTest, AGridThatGoesOnBehindTheSensorKnowsItsPoints) {
   for (const double left : {M_PI + 0.03, -M_PI + 0.03, 2.0 * M_PI}) {
-    SphericalGrid grid;
+    PixelGrid grid;
     grid.width = 20;
     grid.height = 1;
     grid.resolution = 0.007;
-    grid.azimuth_left = left;
+    grid.left = left;
     RangeImage image(grid, Eigen::Isometry3d::Identity());
     FeatureSet features;
     for (int column = 0; column < grid.width; ++column) {

@@ -23,13 +23,13 @@ RankingParams Params() {
   return params;
 }
 
-SphericalGrid Grid() {
-  SphericalGrid grid;
+PixelGrid Grid() {
+  PixelGrid grid;
   grid.width = 60;
   grid.height = 40;
   grid.resolution = 0.01;
-  grid.azimuth_left = 0.3;
-  grid.elevation_top = 0.2;
+  grid.left = 0.3;
+  grid.top = 0.2;
   return grid;
 }
 

@@ -14,17 +14,17 @@ namespace {
 constexpr double kResolution = 0.02;
 
 // Edges at whole multiples of the resolution.
-SphericalGrid Grid(int top, int left, int height, int width) {
-  SphericalGrid grid;
+PixelGrid Grid(int top, int left, int height, int width) {
+  PixelGrid grid;
   grid.resolution = kResolution;
-  grid.elevation_top = top * kResolution;
-  grid.azimuth_left = left * kResolution;
+  grid.top = top * kResolution;
+  grid.left = left * kResolution;
   grid.height = height;
   grid.width = width;
   return grid;
 }
 
-RangeImage Empty(const SphericalGrid& grid) { return {grid, Eigen::Isometry3d::Identity()}; }
+RangeImage Empty(const PixelGrid& grid) { return {grid, Eigen::Isometry3d::Identity()}; }
 
 class RandomImages {
  public:
@@ -51,7 +51,7 @@ class RandomImages {
     }
   }
 
-  RangeImage Image(const SphericalGrid& grid) {
+  RangeImage Image(const PixelGrid& grid) {
     RangeImage image = Empty(grid);
     for (int row = 0; row < grid.height; ++row)
       for (int column = 0; column < grid.width; ++column) SetRandomPixel(row, column, &image);
@@ -64,9 +64,9 @@ class RandomImages {
 
 // The earlier image's pixels in a larger image.
 RangeImage Grown(const RangeImage& image, int above, int below, int left, int right) {
-  SphericalGrid grid = image.grid();
-  grid.elevation_top += above * grid.resolution;
-  grid.azimuth_left += left * grid.resolution;
+  PixelGrid grid = image.grid();
+  grid.top += above * grid.resolution;
+  grid.left += left * grid.resolution;
   grid.height += above + below;
   grid.width += left + right;
   RangeImage grown = Empty(grid);
@@ -107,16 +107,23 @@ TEST(ImageChangeTest, ImagesOfAnotherPlaceOrGridAreNotCompared) {
   const RangeImage image = random.Image(Grid(5, 5, 10, 10));
   Eigen::Isometry3d elsewhere = Eigen::Isometry3d::Identity();
   elsewhere.translation().x() = 1e-9;
-  SphericalGrid finer = image.grid(), beside = image.grid();
+  PixelGrid finer = image.grid(), beside = image.grid();
   finer.resolution *= 0.5;
-  beside.elevation_top += 0.3 * kResolution;
+  beside.top += 0.3 * kResolution;
   EXPECT_TRUE(ImageChange(image, RangeImage(image.grid(), elsewhere)).everything());
   EXPECT_TRUE(ImageChange(image, Empty(finer)).everything());
   EXPECT_TRUE(ImageChange(image, Empty(beside)).everything());
   EXPECT_TRUE(ImageChange(RangeImage(), image).everything());
   EXPECT_TRUE(ImageChange(image, RangeImage()).everything());
-  SphericalGrid far_off = image.grid();
-  far_off.azimuth_left = 1e300;
+  PixelGrid pinhole = image.grid();
+  pinhole.projection = Projection::kPinhole;
+  EXPECT_TRUE(ImageChange(image, Empty(pinhole)).everything());
+  PixelGrid other_axis = pinhole;
+  other_axis.axis.elevation = -0.1;
+  EXPECT_FALSE(ImageChange(Empty(pinhole), Empty(pinhole)).everything());
+  EXPECT_TRUE(ImageChange(Empty(pinhole), Empty(other_axis)).everything());
+  PixelGrid far_off = image.grid();
+  far_off.left = 1e300;
   EXPECT_TRUE(ImageChange(image, Empty(far_off)).everything());
 }
 
@@ -178,6 +185,48 @@ TEST(ImageChangeTest, SpheresSeeWhatTheyMayCover) {
   const ImageChange change(before, now);
   EXPECT_TRUE(change.Touches({0.1f, 0.0f, 0.0f}, 0.2f)) << "around the sensor";
   EXPECT_TRUE(change.Touches({NAN, 0.0f, 0.0f}, 0.2f));
+}
+
+// The same in a pinhole image that looks down; what it cannot hold may be anywhere.
+TEST(ImageChangeTest, SpheresInPinholeImagesSeeWhatTheyMayCover) {
+  RandomImages random(7);
+  int num_touched = 0, num_apart = 0;
+  for (int i = 0; i < 2000; ++i) {
+    PixelGrid grid = Grid(50, 50, 100, 100);
+    grid.projection = Projection::kPinhole;
+    grid.axis = {random.Real(-3.0, 3.0), random.Real(-1.57, 0.5)};
+    const RangeImage before = Empty(grid);
+    RangeImage now = before;
+    const int row = random.Int(0, 99), column = random.Int(0, 99);
+    now.SetNoReturn(row, column);
+    const ImageChange change(before, now);
+    const Eigen::Vector3d beam =
+        PixelBeam(grid, row + random.Real(0, 1), column + random.Real(0, 1));
+    const double distance = random.Real(0.5, 10.0), radius = random.Real(0.01, 0.5) * distance;
+    const Eigen::Vector3d centre =
+        distance * PixelBeam(grid, random.Real(0, 100), random.Real(0, 100));
+    const double apart = std::acos(std::clamp(beam.dot(centre) / distance, -1.0, 1.0));
+    const double angle = std::asin(radius / distance);
+    const bool touched =
+        change.Touches(centre.cast<float>(), static_cast<float>(radius * (1.0 + 1e-5)));
+    if (apart <= angle) {
+      EXPECT_TRUE(touched);
+      ++num_touched;
+    } else if (!touched) {
+      ++num_apart;
+    }
+  }
+  EXPECT_GT(num_touched, 200);
+  EXPECT_GT(num_apart, 200);
+  PixelGrid grid = Grid(50, 50, 100, 100);
+  grid.projection = Projection::kPinhole;
+  RangeImage now = Empty(grid);
+  now.SetNoReturn(0, 0);
+  const ImageChange change(Empty(grid), now);
+  EXPECT_TRUE(change.Touches({-2.0f, 0.0f, 0.0f}, 0.1f)) << "behind";
+  EXPECT_TRUE(change.TouchesBox(Eigen::Isometry3f::Identity(), {-0.5, -1, -1}, {2, 1, 1}));
+  EXPECT_FALSE(change.TouchesBox(Eigen::Isometry3f::Identity(), {2, -1, -1}, {3, 0, 0}));
+  EXPECT_TRUE(change.TouchesBox(Eigen::Isometry3f::Identity(), {2, 1, 1}, {3, 3, 3}));
 }
 
 TEST(ImageChangeTest, BoxesSeeThePixelsBetweenTheirCorners) {
@@ -245,7 +294,7 @@ TEST(ImageChangeTest, RunsMoveWithTheirPixels) {
   for (int i = 0; i < 100; ++i) {
     const RangeImage before = Empty(Grid(10, 10, 6, 8));
     const int above = random.Int(-2, 3), left = random.Int(-2, 3);
-    const SphericalGrid grid = Grid(10 + above, 10 + left, 8, 9);
+    const PixelGrid grid = Grid(10 + above, 10 + left, 8, 9);
     const ImageChange change(before, Empty(grid));
     ASSERT_FALSE(change.everything());
     EXPECT_EQ(change.row_shift(), above);

@@ -217,7 +217,7 @@ TEST(InterestPointsTest, KeepToTheMaximumRange) {
 }
 
 TEST(InterestPointsTest, ImagesWithoutMeasurementsHaveNone) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 20;
   grid.height = 10;
   grid.resolution = 0.01;

@@ -93,6 +93,26 @@ TEST(FindByTriplesTest, FindsAnObjectWhereItStands) {
   EXPECT_GT(found.validated[0].score, 0.6);
 }
 
+TEST(FindByTriplesTest, FindsItInPinholeImagesOfCamerasThatLookDown) {
+  for (const double pitch : {0.25, 0.8, 1.2}) {
+    const Eigen::Isometry3d pose =
+        Placed(2.4 * std::cos(pitch), 0.1, -2.4 * std::sin(pitch) - 0.4, 2.0);
+    World world;
+    Place(Sculpture(), pose, &world);
+    CameraPattern camera;
+    camera.pitch = pitch;
+    PipelineParams params = Params();
+    params.range_image.projection = Projection::kPinhole;
+    const RangeImage image =
+        MakeRangeImage(ScanWorld(world, Eigen::Isometry3d::Identity(), camera), params.range_image);
+    ASSERT_EQ(image.grid().projection, Projection::kPinhole);
+    const StagedCandidates found = FindByTriples(image, ExtractFeatures(image, params, Execution{}),
+                                                 SculptureDatabase(), params, Execution{});
+    ASSERT_EQ(found.validated.size(), 1u) << pitch;
+    EXPECT_TRUE(PosesNear(found.validated[0].T_sensor_object, pose, 0.1, 0.2)) << pitch;
+  }
+}
+
 // Triples need the features' positions alone: what describes them may be exchanged.
 TEST(FindByTriplesTest, FindsItBySphericalSpinImages) {
   for (const int dimensions : {0, 20}) {

@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kResolution = 0.0069;
 
-SphericalGrid Grid(int width, int height) {
-  SphericalGrid grid;
+PixelGrid Grid(int width, int height) {
+  PixelGrid grid;
   grid.width = width;
   grid.height = height;
   grid.resolution = 0.01;
-  grid.azimuth_left = 0.3;
-  grid.elevation_top = 0.2;
+  grid.left = 0.3;
+  grid.top = 0.2;
   return grid;
 }
 
@@ -35,8 +35,8 @@ RangeImageParams Params(double resolution = kResolution, double min_range = 0.1)
 }
 
 // The middle of a pixel as a beam.
-Direction Centre(const SphericalGrid& grid, int row, int column) {
-  return PixelDirection(grid, row + 0.5, column + 0.5);
+ImageCoordinates Centre(const PixelGrid& grid, int row, int column) {
+  return CoordinatesAt(grid, row + 0.5, column + 0.5);
 }
 
 bool SameBits(const RangeImage& a, const RangeImage& b) {
@@ -66,7 +66,7 @@ TEST(ProjectionTest, AxesFollowTheConventions) {
   EXPECT_NEAR(DirectionOf({0, 1, 0}).azimuth, M_PI / 2, 1e-15);
   EXPECT_NEAR(DirectionOf({1, 0, 1}).elevation, M_PI / 4, 1e-15);
   // Left of and above a beam are smaller columns and rows.
-  const SphericalGrid grid = Grid(60, 40);
+  const PixelGrid grid = Grid(60, 40);
   EXPECT_LT(Project(grid, {1, 0.1, 0}).column, Project(grid, {1, 0, 0}).column);
   EXPECT_LT(Project(grid, {1, 0, 0.1}).row, Project(grid, {1, 0, 0}).row);
 }
@@ -74,7 +74,7 @@ TEST(ProjectionTest, AxesFollowTheConventions) {
 TEST(ProjectionTest, ProjectInvertsPixelDirection) {
   RandomValues random(2);
   for (int i = 0; i < 1000; ++i) {
-    const SphericalGrid grid = Grid(60, 40);
+    const PixelGrid grid = Grid(60, 40);
     const double row = random.Between(0.0, 40.0), column = random.Between(0.0, 60.0);
     const Eigen::Vector3d p =
         random.Between(0.2, 50.0) * UnitVector(PixelDirection(grid, row, column));
@@ -114,7 +114,7 @@ TEST(RangeImageTest, KeepsThreeKindsOfPixelsApart) {
 }
 
 TEST(RangeImageTest, AMeasurementOutlivesABeamWithoutReturn) {
-  const SphericalGrid grid = Grid(2, 1);
+  const PixelGrid grid = Grid(2, 1);
   RangeImage image(grid, Eigen::Isometry3d::Identity());
   image.AddBeams({Centre(grid, 0, 0)}, {2.0});
   image.AddNoReturn(Centre(grid, 0, 0));
@@ -126,8 +126,8 @@ TEST(RangeImageTest, AMeasurementOutlivesABeamWithoutReturn) {
 }
 
 TEST(RangeImageTest, NearerPointWinsThePixel) {
-  const SphericalGrid grid = Grid(1, 1);
-  const Direction beam = Centre(grid, 0, 0);
+  const PixelGrid grid = Grid(1, 1);
+  const ImageCoordinates beam = Centre(grid, 0, 0);
   for (const auto& ranges : {std::vector<double>{2.0, 3.0}, std::vector<double>{3.0, 2.0}}) {
     RangeImage together(grid, Eigen::Isometry3d::Identity());
     together.AddBeams({beam, beam}, ranges);
@@ -139,7 +139,7 @@ TEST(RangeImageTest, NearerPointWinsThePixel) {
 }
 
 TEST(RangeImageTest, BeamsOutsideAreLeftOut) {
-  const SphericalGrid grid = Grid(4, 4);
+  const PixelGrid grid = Grid(4, 4);
   RangeImage image(grid, Eigen::Isometry3d::Identity());
   for (const auto& [row, column] :
        {std::pair{-1, 0}, std::pair{0, -1}, std::pair{4, 0}, std::pair{0, 4}, std::pair{900, 2}}) {
@@ -171,15 +171,15 @@ TEST(RangeImageTest, RejectsAbsurdGrids) {
   EXPECT_THROW(RangeImage(Grid(5000, 5000), T), std::invalid_argument);
   EXPECT_THROW(RangeImage(Grid(2'000'000'000, 2'000'000'000), T), std::invalid_argument);
   for (const double resolution : {0.0, -0.01, std::nan(""), HUGE_VAL}) {
-    SphericalGrid grid = Grid(5, 5);
+    PixelGrid grid = Grid(5, 5);
     grid.resolution = resolution;
     EXPECT_THROW(RangeImage(grid, T), std::invalid_argument) << resolution;
   }
-  SphericalGrid grid = Grid(5, 5);
-  grid.azimuth_left = std::nan("");
+  PixelGrid grid = Grid(5, 5);
+  grid.left = std::nan("");
   EXPECT_THROW(RangeImage(grid, T), std::invalid_argument);
   grid = Grid(5, 5);
-  grid.elevation_top = HUGE_VAL;
+  grid.top = HUGE_VAL;
   EXPECT_THROW(RangeImage(grid, T), std::invalid_argument);
 }
 

@@ -79,10 +79,10 @@ TEST(NormalAtTest, IsThatOfASphere) {
 }
 
 TEST(NormalAtTest, NeedsEnoughPointsThatAreNoLine) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = grid.height = 30;
   grid.resolution = 0.005;
-  grid.azimuth_left = grid.elevation_top = 0.075;
+  grid.left = grid.top = 0.075;
   const RoundedPixel at_two_metres{1600, 0, 0};
   RangeImage image(grid, Eigen::Isometry3d::Identity());
   image.SetMeasured(15, 15, at_two_metres);
@@ -265,7 +265,7 @@ TEST(DescribePatchTest, IsTheSameWhenSceneAndSensorMoveTogether) {
 }
 
 TEST(DescribePatchTest, NothingWithoutANormal) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = grid.height = 9;
   grid.resolution = 0.01;
   RangeImage image(grid, Eigen::Isometry3d::Identity());
@@ -274,10 +274,10 @@ TEST(DescribePatchTest, NothingWithoutANormal) {
 }
 
 TEST(DescribePatchTest, PointsRightBeforeTheSensorAreHarmless) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = grid.height = 60;
   grid.resolution = 0.02;
-  grid.azimuth_left = grid.elevation_top = 0.6;
+  grid.left = grid.top = 0.6;
   RangeImage image(grid, Eigen::Isometry3d::Identity());
   for (int row = 0; row < 60; ++row)
     for (int column = 0; column < 60; ++column) image.SetMeasured(row, column, {1, 0, 0});

@@ -42,13 +42,13 @@ TEST(SceneTest, KeepsRangesAndKindsOfPixels) {
   }
 }
 
-SphericalGrid Grid(int width, int height, double azimuth_left, double elevation_top) {
-  SphericalGrid grid;
+PixelGrid Grid(int width, int height, double azimuth_left, double elevation_top) {
+  PixelGrid grid;
   grid.resolution = 0.00698;
   grid.width = width;
   grid.height = height;
-  grid.azimuth_left = azimuth_left;
-  grid.elevation_top = elevation_top;
+  grid.left = azimuth_left;
+  grid.top = elevation_top;
   return grid;
 }
 
@@ -61,7 +61,7 @@ ProjectedPoints Projected(const Scene& scene, const std::vector<Eigen::Vector3f>
 
 TEST(SceneTest, ItsFastProjectionAgreesWithTheExactOne) {
   RandomValues random(2);
-  const SphericalGrid grid = Grid(900, 440, 3.1415, 1.55);
+  const PixelGrid grid = Grid(900, 440, 3.1415, 1.55);
   const Scene scene(RangeImage(grid, Eigen::Isometry3d::Identity()), 0.1, Execution{});
   const Eigen::Isometry3d pose = random.Pose();
   std::vector<Eigen::Vector3f> points;

@@ -22,13 +22,13 @@ ScoringParams Params() {
   return params;
 }
 
-SphericalGrid Grid() {
-  SphericalGrid grid;
+PixelGrid Grid() {
+  PixelGrid grid;
   grid.width = 20;
   grid.height = 10;
   grid.resolution = 0.01;
-  grid.azimuth_left = 0.1;
-  grid.elevation_top = 0.05;
+  grid.left = 0.1;
+  grid.top = 0.05;
   return grid;
 }
 

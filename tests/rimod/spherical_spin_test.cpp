@@ -246,7 +246,7 @@ TEST(SphericalSpinDescriberTest, DescribesAllMeasuredPointsAround) {
 }
 
 TEST(SphericalSpinDescriberTest, NothingWithoutANormal) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = grid.height = 9;
   grid.resolution = 0.01;
   RangeImage image(grid, Eigen::Isometry3d::Identity());

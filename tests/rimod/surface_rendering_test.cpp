@@ -12,18 +12,18 @@
 namespace rimod {
 namespace {
 
-SphericalGrid Grid(double resolution = 0.005, int width = 300, int height = 200) {
-  SphericalGrid grid;
+PixelGrid Grid(double resolution = 0.005, int width = 300, int height = 200) {
+  PixelGrid grid;
   grid.width = width;
   grid.height = height;
   grid.resolution = resolution;
-  grid.azimuth_left = 0.5 * width * resolution;
-  grid.elevation_top = 0.5 * height * resolution;
+  grid.left = 0.5 * width * resolution;
+  grid.top = 0.5 * height * resolution;
   return grid;
 }
 
 // Range of the world's surface in each pixel that the rendering covers, or beside it.
-double TrueRange(const World& world, const SphericalGrid& grid, int row, int column) {
+double TrueRange(const World& world, const PixelGrid& grid, int row, int column) {
   return CastBeam(world, Eigen::Vector3d::Zero(),
                   UnitVector(PixelDirection(grid, row + 0.5, column + 0.5)))
       .value_or(-1.0);
@@ -44,7 +44,7 @@ struct Comparison {
   double mean = 0.0;
 };
 
-Comparison Compare(const RenderedModel& rendered, const World& world, const SphericalGrid& grid) {
+Comparison Compare(const RenderedModel& rendered, const World& world, const PixelGrid& grid) {
   Comparison result;
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
@@ -77,7 +77,7 @@ Eigen::Isometry3d FacingPose(double distance, double heading, double tilt) {
 
 TEST(RenderModelTest, APlaneHasItsExactDepth) {
   const ObjectModel plate = PlateModel("plate", 0.6, 0.01);
-  const SphericalGrid grid = Grid();
+  const PixelGrid grid = Grid();
   for (const auto& [heading, tilt] : {std::pair{0.0, 0.0}, {0.7, 0.0}, {-0.9, 0.3}, {0.2, -0.5}}) {
     const Eigen::Isometry3d T = FacingPose(2.0, heading, tilt);
     World world;  // the plate as a very thin box
@@ -95,7 +95,7 @@ TEST(RenderModelTest, APlaneHasItsExactDepth) {
 
 TEST(RenderModelTest, ASphereHasItsDepth) {
   const ObjectModel sphere = SphereModel("ball", 0.4, 0.01);
-  const SphericalGrid grid = Grid();
+  const PixelGrid grid = Grid();
   const Eigen::Isometry3d T = Placed(2.0, 0.05, -0.3, 0.4);
   World world;
   world.spheres = {{Eigen::Vector3d(2.0, 0.05, 0.1), 0.4}};
@@ -159,7 +159,7 @@ TEST(RenderModelTest, OnlyThePartInsideTheGridIsRendered) {
   const ObjectModel plate = PlateModel("plate", 0.6, 0.01);
   const Eigen::Isometry3d T = FacingPose(2.0, 0.0, 0.0);
   const RenderedModel whole = RenderModel(plate, T, Grid());
-  const SphericalGrid small = Grid(0.005, 40, 20);
+  const PixelGrid small = Grid(0.005, 40, 20);
   const RenderedModel part = RenderModel(plate, T, small);
   EXPECT_EQ(part.CountSeen(), 800);
   for (int row = 0; row < 20; ++row)
@@ -176,7 +176,7 @@ TEST(RenderModelTest, NothingOfTheModelInTheGridIsNothing) {
     EXPECT_EQ(rendered.ranges.size(), rendered.points.size());
   }
   EXPECT_EQ(RenderModel(ObjectModel{}, FacingPose(2, 0, 0), Grid()).CountSeen(), 0);
-  EXPECT_EQ(RenderModel(plate, FacingPose(2, 0, 0), SphericalGrid{}).CountSeen(), 0);
+  EXPECT_EQ(RenderModel(plate, FacingPose(2, 0, 0), PixelGrid{}).CountSeen(), 0);
 }
 
 TEST(RenderModelTest, ASensorAmidTheModelIsHarmless) {

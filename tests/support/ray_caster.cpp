@@ -52,6 +52,31 @@ double Distance(const BoxShape& box, const Eigen::Vector3d& origin,
   return enter > 0.0 ? enter : leave;
 }
 
+struct Readings {
+  double max_range = 0.0, noise = 0.0;  // m
+  std::uint32_t seed = 1;
+};
+
+// Of beams in the sensor frame.
+Scan ScanAlong(const std::vector<Eigen::Vector3d>& beams, const World& world,
+               const Eigen::Isometry3d& T_local_sensor, const Readings& readings) {
+  std::mt19937 random(readings.seed);
+  std::normal_distribution<double> noise(0.0, std::max(readings.noise, 1e-12));
+  Scan scan;
+  scan.T_local_sensor = T_local_sensor;
+  for (const Eigen::Vector3d& beam_sensor : beams) {
+    const Eigen::Vector3d beam = T_local_sensor.linear() * beam_sensor;
+    const std::optional<double> range = CastBeam(world, T_local_sensor.translation(), beam);
+    if (range && *range < readings.max_range) {
+      const double measured = *range + (readings.noise > 0.0 ? noise(random) : 0.0);
+      scan.points.push_back((T_local_sensor.translation() + measured * beam).cast<float>());
+    } else {
+      scan.no_return_directions.push_back(beam.cast<float>());
+    }
+  }
+  return scan;
+}
+
 }  // namespace
 
 std::optional<double> CastBeam(const World& world, const Eigen::Vector3d& origin,
@@ -69,29 +94,32 @@ std::optional<double> CastBeam(const World& world, const Eigen::Vector3d& origin
 
 Scan ScanWorld(const World& world, const Eigen::Isometry3d& T_local_sensor,
                const BeamPattern& pattern) {
-  std::mt19937 random(pattern.seed);
-  std::normal_distribution<double> noise(0.0, std::max(pattern.noise, 1e-12));
-  Scan scan;
-  scan.T_local_sensor = T_local_sensor;
+  std::vector<Eigen::Vector3d> beams;
   const int columns =
       1 + static_cast<int>((pattern.azimuth_max - pattern.azimuth_min) / pattern.step);
   const int rows =
       1 + static_cast<int>((pattern.elevation_max - pattern.elevation_min) / pattern.step);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const Direction direction{pattern.azimuth_min + column * pattern.step,
-                                pattern.elevation_min + row * pattern.step};
-      const Eigen::Vector3d beam = T_local_sensor.linear() * UnitVector(direction);
-      const std::optional<double> range = CastBeam(world, T_local_sensor.translation(), beam);
-      if (range && *range < pattern.max_range) {
-        const double measured = *range + (pattern.noise > 0.0 ? noise(random) : 0.0);
-        scan.points.push_back((T_local_sensor.translation() + measured * beam).cast<float>());
-      } else {
-        scan.no_return_directions.push_back(beam.cast<float>());
-      }
+      beams.push_back(UnitVector({pattern.azimuth_min + column * pattern.step,
+                                  pattern.elevation_min + row * pattern.step}));
     }
   }
-  return scan;
+  return ScanAlong(beams, world, T_local_sensor, {pattern.max_range, pattern.noise, pattern.seed});
+}
+
+Scan ScanWorld(const World& world, const Eigen::Isometry3d& T_local_sensor,
+               const CameraPattern& pattern) {
+  const Eigen::AngleAxisd R_sensor_camera(pattern.pitch, Eigen::Vector3d::UnitY());
+  std::vector<Eigen::Vector3d> beams;
+  for (int row = 0; row < pattern.height; ++row) {
+    for (int column = 0; column < pattern.width; ++column) {
+      const Eigen::Vector3d p_camera(pattern.focal, 0.5 * pattern.width - column - 0.5,
+                                     0.5 * pattern.height - row - 0.5);
+      beams.push_back(R_sensor_camera * p_camera.normalized());
+    }
+  }
+  return ScanAlong(beams, world, T_local_sensor, {pattern.max_range, pattern.noise, pattern.seed});
 }
 
 Eigen::Isometry3d LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {

@@ -51,6 +51,20 @@ struct BeamPattern {
 Scan ScanWorld(const World& world, const Eigen::Isometry3d& T_local_sensor,
                const BeamPattern& pattern);
 
+// A depth camera: square pixels about an optical axis that lies in the level sensor frame's x-z
+// plane.
+struct CameraPattern {
+  double pitch = 0.0;  // rad, down
+  int width = 160, height = 120;
+  double focal = 140.0;     // pixels
+  double max_range = 80.0;  // m
+  double noise = 0.0;       // m, standard deviation of the ranges
+  std::uint32_t seed = 1;
+};
+
+Scan ScanWorld(const World& world, const Eigen::Isometry3d& T_local_sensor,
+               const CameraPattern& pattern);
+
 // A level sensor at the position that looks towards the target.
 Eigen::Isometry3d LookAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target);
 

@@ -32,13 +32,13 @@ class CaseCausesTest : public testing::Test {
     scan_.objects = {object};
   }
 
-  static SphericalGrid Grid() {
-    SphericalGrid grid;
+  static PixelGrid Grid() {
+    PixelGrid grid;
     grid.width = 120;
     grid.height = 60;
     grid.resolution = 0.01;
-    grid.azimuth_left = 0.6;
-    grid.elevation_top = 0.4;
+    grid.left = 0.6;
+    grid.top = 0.4;
     return grid;
   }
 

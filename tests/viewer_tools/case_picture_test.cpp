@@ -13,12 +13,12 @@ namespace rimod {
 namespace {
 
 RangeImage Wall(double range) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 100;
   grid.height = 60;
   grid.resolution = 0.01;
-  grid.azimuth_left = 0.5;
-  grid.elevation_top = 0.3;
+  grid.left = 0.5;
+  grid.top = 0.3;
   RangeImage image(grid, Eigen::Isometry3d::Identity());
   RoundedPixel pixel;
   pixel.range = static_cast<std::uint16_t>(std::lround(range / PixelRounding::kRangeUnit));

@@ -13,12 +13,12 @@ constexpr double kResolution = 0.01;  // rad
 // A wall of pixels at 3 m, 100 columns wide and 60 rows high, straight ahead; the sensor stands 1 m
 // high.
 RangeImage MakeWall() {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 100;
   grid.height = 60;
   grid.resolution = kResolution;
-  grid.azimuth_left = 0.5;
-  grid.elevation_top = 0.3;
+  grid.left = 0.5;
+  grid.top = 0.3;
   Eigen::Isometry3d T_local_sensor = Eigen::Isometry3d::Identity();
   T_local_sensor.translation().z() = 1.0;
   RangeImage image(grid, T_local_sensor);
@@ -64,7 +64,7 @@ double Distance(const Colour& a, const Colour& b) {
 }
 
 TEST(RangeImagePictureTest, MeasuredNoReturnAndNeverObservedLookDifferent) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 3;
   grid.height = 1;
   grid.resolution = kResolution;
@@ -111,6 +111,37 @@ TEST(RangeImagePictureTest, AnObjectColoursItsPixelsAndNoOthers) {
   EXPECT_LT(Distance(At(with, middle), expected), 2.0);
   const cv::Point2d corner = layout.ToCanvas({58.5, 2.5});
   EXPECT_EQ(At(with, corner), At(without, corner));
+}
+
+TEST(RangeImagePictureTest, PinholeImagesShowObjectsWhereTheyAre) {
+  PixelGrid grid = MakeWall().grid();
+  grid.projection = Projection::kPinhole;
+  RangeImage image(grid, Eigen::Isometry3d::Identity());
+  for (int row = 0; row < image.height(); ++row)
+    for (int column = 0; column < image.width(); ++column)
+      image.SetMeasured(row, column, {4000, 0, 0});
+  const std::vector<ObjectModel> models = {MakePlate()};
+  const std::vector<Detection> detections = {PlateAt(2.5, 0.0, -0.2), PlateAt(-2.5, 0.0, -0.2)};
+  PictureExtras extras;
+  extras.points.emplace_back();
+  extras.points.back().p_sensor = Eigen::Vector3d(-2.0, 0.1, 0.2);
+  const cv::Mat with = DrawRangeImage(image, MakeDrawnObjects(detections, models), "", extras);
+  const cv::Mat without = DrawRangeImage(image, {}, "");
+  const RangeImageLayout layout = LayOutRangeImage(image);
+  const cv::Point2d middle =
+      layout.ToCanvas(Project(image.grid(), Eigen::Vector3d(2.5, 0.03, 0.03)));
+  const Colour expected = Blend(At(without, middle), ObjectColour(0), 0.55);
+  EXPECT_LT(Distance(At(with, middle), expected), 2.0);
+  const cv::Point2d corner = layout.ToCanvas({58.5, 2.5});
+  EXPECT_EQ(At(with, corner), At(without, corner));
+  // The legend tells the projection.
+  RangeImage spherical(MakeWall().grid(), Eigen::Isometry3d::Identity());
+  for (int row = 0; row < image.height(); ++row)
+    for (int column = 0; column < image.width(); ++column)
+      spherical.SetMeasured(row, column, {4000, 0, 0});
+  const cv::Mat other = DrawRangeImage(spherical, {}, "");
+  const cv::Rect below(0, layout.area.br().y, other.cols, other.rows - layout.area.br().y);
+  EXPECT_GT(cv::norm(without(below), other(below)), 100.0);
 }
 
 TEST(RangeImagePictureTest, WhatTheSceneHidesIsNotPainted) {
@@ -175,8 +206,8 @@ TEST(TopViewPictureTest, CeilingsAreLeftOut) {
   const cv::Mat before = DrawTopView(image, {}, "");
   // One reading 2.9 m up, right of everything else drawn there.
   const Eigen::Vector3d p_sensor(2.0, 0.0, 1.9);
-  SphericalGrid grid = image.grid();
-  grid.elevation_top = 0.9;
+  PixelGrid grid = image.grid();
+  grid.top = 0.9;
   grid.height = 120;
   RangeImage taller(grid, image.T_local_sensor());
   for (int row = 0; row < image.height(); ++row)

@@ -13,7 +13,7 @@ namespace rimod {
 namespace {
 
 RangeImage MakeImage(int range) {
-  SphericalGrid grid;
+  PixelGrid grid;
   grid.width = 40;
   grid.height = 30;
   grid.resolution = 0.01;

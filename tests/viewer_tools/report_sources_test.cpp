@@ -23,7 +23,7 @@ class ReportSourcesTest : public testing::Test {
 
   // A log with so many range images and detections of one object each.
   void WriteLog(const std::string& name, int num_scans) {
-    SphericalGrid grid;
+    PixelGrid grid;
     grid.width = 40;
     grid.height = 30;
     grid.resolution = 0.01;

@@ -18,7 +18,7 @@ namespace {
 
 // A wall 3 m before the sensor, which stands 1 m above the local frame's origin.
 RangeImage MakeWall(int width = 120, int height = 60) {
-  const SphericalGrid grid{width, height, 0.01, 0.005 * width, 0.005 * height};
+  const PixelGrid grid{width, height, 0.01, 0.005 * width, 0.005 * height};
   Eigen::Isometry3d T_local_sensor = Eigen::Isometry3d::Identity();
   T_local_sensor.translation().z() = 1.0;
   RangeImage image(grid, T_local_sensor);

@@ -130,6 +130,7 @@ final class RangeImageView extends ChannelView {
 
   private String title() {
     String text = "scan " + shown.utime + ", " + shown.width + " x " + shown.height + " pixels";
+    if (shown.isPinhole()) text += ", pinhole";
     if (!shown.complete()) text += ", " + shown.progress();
     if (features != null && features.utime == shown.utime)
       text += ", " + features.points.size() + " interest points";
@@ -139,10 +140,10 @@ final class RangeImageView extends ChannelView {
   private void paintPoints(Graphics graphics, Rectangle area) {
     double pixel = (double) area.width / shown.width;
     for (float[] p : features.points) {
-      double azimuth = Math.atan2(p[1], p[0]);
-      double elevation = Math.atan2(p[2], Math.hypot(p[0], p[1]));
-      double x = area.x + (shown.azimuthLeft - azimuth) / shown.resolution * pixel;
-      double y = area.y + (shown.elevationTop - elevation) / shown.resolution * pixel;
+      double[] position = shown.positionOf(p);
+      if (position == null) continue;
+      double x = area.x + position[0] * pixel;
+      double y = area.y + position[1] * pixel;
       if (!area.contains(x, y)) continue;
       graphics.setColor(Color.BLACK);
       graphics.fillRect((int) x - 2, (int) y - 2, 4, 4);
@@ -182,8 +183,7 @@ final class RangeImageView extends ChannelView {
     if (mouse == null || !area.contains(mouse)) return "point with the mouse: range";
     int column = (int) ((double) (mouse.x - area.x) / area.width * shown.width);
     int row = (int) ((double) (mouse.y - area.y) / area.height * shown.height);
-    double azimuth = Math.toDegrees(shown.azimuthLeft - (column + 0.5) * shown.resolution);
-    double elevation = Math.toDegrees(shown.elevationTop - (row + 0.5) * shown.resolution);
+    double[] direction = shown.directionOf(row, column);
     int steps = shown.steps(row, column);
     String what = String.format("range %.3f m", steps * shown.rangeUnit);
     if (steps == RangeImageParts.NO_RETURN) what = "no return";
@@ -191,6 +191,6 @@ final class RangeImageView extends ChannelView {
       what = shown.hasRow(row) ? "never observed" : "not received";
     return String.format(
         "row %d, column %d: azimuth %+.1f, elevation %+.1f deg, %s",
-        row, column, azimuth, elevation, what);
+        row, column, direction[0], direction[1], what);
   }
 }

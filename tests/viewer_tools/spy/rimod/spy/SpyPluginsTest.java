@@ -30,6 +30,7 @@ public final class SpyPluginsTest {
     drawsAWholeImage();
     drawsWhatCameOfAnImage();
     marksInterestPoints();
+    laysOutPinholeImages();
     drawsDetections();
     drawsEarlyDetections();
     leavesOutWhatIsTooFar();
@@ -157,6 +158,33 @@ public final class SpyPluginsTest {
     check(count(picture, Palette.range(1)) >= third, "a far third");
     check(count(picture, Palette.HATCH_DARK) >= WIDTH * pixels / 2, "a row never observed");
     check(count(picture, Palette.NOT_RECEIVED) == 22 * 14, "not received in the legend only");
+  }
+
+  /** A point seen in a pixel's middle lies along the direction told for it. */
+  private static void laysOutPinholeImages() throws Exception {
+    range_image_t message = section(0, 5);
+    message.projection = range_image_t.PINHOLE;
+    message.axis_azimuth = 0.3;
+    message.axis_elevation = -1.4;
+    RangeImageParts image = RangeImageParts.add(null, encode(message));
+    check(image.isPinhole(), "a pinhole image");
+    double[] direction = image.directionOf(8, 70);
+    double a = Math.toRadians(direction[0]);
+    double e = Math.toRadians(direction[1]);
+    float[] p = {(float) (2 * Math.cos(e) * Math.cos(a)), (float) (2 * Math.cos(e) * Math.sin(a)),
+        (float) (2 * Math.sin(e))};
+    double[] position = image.positionOf(p);
+    check(Math.abs(position[0] - 70.5) < 1e-3, "the column of a point below");
+    check(Math.abs(position[1] - 8.5) < 1e-3, "the row of a point below");
+    check(image.positionOf(new float[] {0, 0, 1}) == null, "what is behind is nowhere");
+    message.projection = 7;
+    boolean refused = false;
+    try {
+      RangeImageParts.add(null, encode(message));
+    } catch (BadMessage bad) {
+      refused = true;
+    }
+    check(refused, "an unknown projection is refused");
   }
 
   private static void drawsWhatCameOfAnImage() throws Exception {
