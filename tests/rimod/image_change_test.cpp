@@ -216,7 +216,7 @@ TEST(ImageChangeTest, SpheresInPinholeImagesSeeWhatTheyMayCover) {
       ++num_apart;
     }
   }
-  EXPECT_GT(num_touched, 200);
+  EXPECT_GT(num_touched, 100);
   EXPECT_GT(num_apart, 200);
   PixelGrid grid = Grid(50, 50, 100, 100);
   grid.projection = Projection::kPinhole;
