@@ -59,6 +59,16 @@ struct Bounds {
   static constexpr double kNone = 1e6;  // beyond every coordinate
 };
 
+// Calls body(i) for i in [0, count), many in one piece of work.
+template <typename Body>
+void ForEach(std::size_t count, const Execution& execution, const Body& body) {
+  constexpr std::size_t kPieces = 64;
+  execution.parallel_for(kPieces, [&](std::size_t piece) {
+    const std::size_t end = (piece + 1) * count / kPieces;
+    for (std::size_t i = piece * count / kPieces; i < end; ++i) body(i);
+  });
+}
+
 // A grid without pixels yet: the projection and its axis.
 PixelGrid PlaneFor(const Scan& scan, const RangeImageParams& params) {
   PixelGrid plane;
@@ -143,17 +153,26 @@ void RangeImage::SetNoReturn(int row, int column) {
 
 void RangeImage::AddBeams(const std::vector<ImageCoordinates>& beams,
                           const std::vector<double>& ranges, const Execution& execution) {
-  // z-buffer: the nearest beam of each pixel; only those are worth computing a point for.
-  std::vector<RoundedPixel> nearest(rounded_);
-  for (std::size_t i = 0; i < beams.size(); ++i) {
+  struct Beam {
+    int index = -1;  // of its pixel
+    RoundedPixel pixel;
+  };
+  std::vector<Beam> placed(beams.size());
+  ForEach(beams.size(), execution, [&](std::size_t i) {
     const PixelPosition position = PositionOf(grid_, beams[i]);
     const int row = static_cast<int>(std::floor(position.row));
     const int column = static_cast<int>(std::floor(position.column));
-    if (!grid_.Contains(row, column)) continue;
-    RoundedPixel& pixel = nearest[Index(row, column)];
-    const std::uint16_t range = RangeSteps(ranges[i]);
-    if (pixel.range != 0 && pixel.range <= range) continue;
-    pixel = {range, OffsetSteps(position.column, column), OffsetSteps(position.row, row)};
+    if (!grid_.Contains(row, column)) return;
+    placed[i].index = Index(row, column);
+    placed[i].pixel = {RangeSteps(ranges[i]), OffsetSteps(position.column, column),
+                       OffsetSteps(position.row, row)};
+  });
+  // z-buffer: the nearest beam of each pixel; only those are worth computing a point for.
+  std::vector<RoundedPixel> nearest(rounded_);
+  for (const Beam& beam : placed) {
+    if (beam.index < 0) continue;
+    RoundedPixel& pixel = nearest[beam.index];
+    if (pixel.range == 0 || beam.pixel.range < pixel.range) pixel = beam.pixel;
   }
   execution.parallel_for(static_cast<std::size_t>(height()), [&](std::size_t i) {
     const int row = static_cast<int>(i);
@@ -202,18 +221,14 @@ RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
   if (plane.projection == Projection::kPinhole) T_axis_local.prerotate(AxisFromSensor(plane));
 
   // Slots by point, range 0 where it does not count; then those that do move together.
-  constexpr std::size_t kBatches = 64;
   std::vector<ImageCoordinates> beams(scan.points.size());
   std::vector<double> ranges(scan.points.size());
-  execution.parallel_for(kBatches, [&](std::size_t batch) {
-    const std::size_t end = (batch + 1) * ranges.size() / kBatches;
-    for (std::size_t i = batch * ranges.size() / kBatches; i < end; ++i) {
-      const Eigen::Vector3d p_axis = T_axis_local * scan.points[i].cast<double>();
-      const double range = p_axis.norm();
-      if (!(range >= params.min_range && range > 0.0)) continue;
-      ranges[i] = range;
-      beams[i] = CoordinatesOf(plane.projection, p_axis);
-    }
+  ForEach(ranges.size(), execution, [&](std::size_t i) {
+    const Eigen::Vector3d p_axis = T_axis_local * scan.points[i].cast<double>();
+    const double range = p_axis.norm();
+    if (!(range >= params.min_range && range > 0.0)) return;
+    ranges[i] = range;
+    beams[i] = CoordinatesOf(plane.projection, p_axis);
   });
   Bounds bounds;
   std::size_t count = 0;
@@ -225,13 +240,12 @@ RangeImage MakeRangeImage(const Scan& scan, const RangeImageParams& params,
   }
   ranges.resize(count);
   beams.resize(count);
-  std::vector<ImageCoordinates> no_returns;
-  no_returns.reserve(scan.no_return_directions.size());
-  for (const Eigen::Vector3f& beam_local : scan.no_return_directions) {
-    no_returns.push_back(
-        CoordinatesOf(plane.projection, T_axis_local.linear() * beam_local.cast<double>()));
-    bounds.Include(no_returns.back());
-  }
+  std::vector<ImageCoordinates> no_returns(scan.no_return_directions.size());
+  ForEach(no_returns.size(), execution, [&](std::size_t i) {
+    no_returns[i] = CoordinatesOf(
+        plane.projection, T_axis_local.linear() * scan.no_return_directions[i].cast<double>());
+  });
+  for (const ImageCoordinates& beam : no_returns) bounds.Include(beam);
 
   constexpr double kStep = 1.25;  // from one resolution to the next
   for (double resolution = params.resolution;; resolution *= kStep) {
