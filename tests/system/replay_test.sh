@@ -3,6 +3,7 @@
 #   - one after the other they give the detections of rimod-detect, to the bit;
 #   - the same log gives the same log, at any number of threads, also of growing scans;
 #   - a long log takes no more memory than a short one, and each of its scans is found;
+#   - so are pinhole images of a depth camera that looks down; a sweep is too wide for them, which is told once;
 #   - damaged, foreign and missing logs and outputs that cannot be written are told and end with 1.
 #   replay_test.sh BIN LOG_DIGEST MODELS LOG SCENE
 set -u
@@ -66,6 +67,28 @@ for stage in $stages; do
   echo "rimod-$stage: peak memory $once kB for one scan, $many kB for 6"
   [ "$many" -le $((once + once / 4 + 10000)) ] || fail "rimod-$stage keeps what it has done"
 done
+
+# Pinhole images.
+printf 'range_image:\n  projection: pinhole\n' >"$work/pinhole.yaml"
+"$bin/rimod-detect" --config "$work/pinhole.yaml" --models "$models" "$log" "$log" >"$work/wide" 2>"$work/wide.err" || fail "rimod-detect"
+cat "$work/offline" "$work/offline" | cmp - "$work/wide" || fail "detections of sweeps that are too wide for a pinhole image"
+[ "$(grep -c 'too wide' "$work/wide.err")" = 1 ] || fail "too wide for a pinhole image, and not told once"
+"$bin/rimod-extractor" --config "$work/pinhole.yaml" --replay "$work/long_out.assembled" --out "$work/wide.extracted" \
+  2>"$work/wide.err" || fail "rimod-extractor"
+[ "$(grep -c 'too wide' "$work/wide.err")" = 1 ] || fail "too wide for pinhole images, and not told once"
+printf 'choice:\n  min_probability: 0.05\n' >>"$work/pinhole.yaml"
+"$bin/rimod-sensor-clouds" "$scene" --sensor camera --pitch 40 --yaw -60 -20 20 60 --log "$work/camera" --truth "$work/camera.json" |
+  sed -n '/^cloud:/,$p' >>"$work/pinhole.yaml"
+camera=(--config "$work/pinhole.yaml" --cloud-channel CLOUD --cloud-pose-channel CARRIER_TO_LOCAL)
+"$bin/rimod-detect" "${camera[@]}" --models "$models" "$work/camera" 2>"$work/camera.err" |
+  sed 's/"scan":"[^"]*",//' >"$work/expected"
+! grep -q 'too wide' "$work/camera.err" || fail "a camera is not too wide for a pinhole image"
+[ -s "$work/expected" ] || fail "nothing was found in a camera's clouds: nothing to compare"
+"$bin/rimod-extractor" "${camera[@]}" --replay "$work/camera" --out "$work/camera.extracted" 2>"$work/extractor.err" &&
+  "$bin/rimod-matcher" --config "$work/pinhole.yaml" --models "$models" --replay "$work/camera.extracted" \
+    --out "$work/camera.matched" 2>"$work/matcher.err" || fail "replay of a camera's clouds"
+"$digest" detections "$work/camera.matched" camera | sed 's/"scan":"[^"]*",//' >"$work/replayed"
+same "detections in pinhole images replayed and offline" "$work/replayed" "$work/expected"
 
 # expect_failure WORDS COMMAND...: ends with 1 and says so.
 expect_failure() {
