@@ -14,7 +14,7 @@ constexpr float kMinFacingCosine = 0.08f;
 // Points that face the sensor, by coordinate (m, frame of the grid's axis), and where they are
 // seen.
 struct FacingPoints {
-  std::vector<int> indices;  // in the model
+  std::vector<int> indices;   // in the model
   std::vector<float> planes;  // m: a beam along unit vector u meets a disc at plane / n.u
   std::vector<float> x, y, z;
   std::vector<float> ranges;  // m
