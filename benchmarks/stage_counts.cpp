@@ -12,6 +12,7 @@
 #include "io/scan_source.h"
 #include "rimod/detector.h"
 #include "rimod/model_building.h"
+#include "rimod/wide_loops.h"
 
 namespace rimod {
 namespace {
@@ -83,5 +84,6 @@ int main() {
     return 2;
   }
   rimod::RunAll();
+  std::cout << (rimod::LoopsHaveEightLanes() ? "eight_lanes" : "four_lanes") << '\n';
   return 0;
 }

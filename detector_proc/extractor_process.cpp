@@ -195,6 +195,7 @@ void ExtractorProcess::Work(const Job& job) try {
 
 void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
   const auto begin = Clock::now();
+  growing_extractor_.Forget();  // the sweep has ended
   StageTimer timer;
   Execution execution = pool_.MakeExecution();
   timer.Watch(&execution);
@@ -217,11 +218,16 @@ void ExtractorProcess::WorkOnScan(const StampedScan& scan) {
 
 // Once a change.
 void ExtractorProcess::TellProjection(const RangeImage& image) {
+  if (image.grid().size() == 0) return;
   const bool too_wide = IsTooWideForPinhole(image, params_.range_image);
   if (too_wide) ++num_too_wide_;
   if (too_wide == was_too_wide_) return;
   was_too_wide_ = too_wide;
-  spdlog::warn("{}", too_wide ? kTooWideText : "range images are pinhole images again");
+  if (too_wide) {
+    spdlog::warn(kTooWideText);
+  } else {
+    spdlog::info("range images are pinhole images again");
+  }
 }
 
 void ExtractorProcess::WorkOnPartial(const StampedScan& scan) {

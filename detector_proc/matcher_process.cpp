@@ -288,6 +288,7 @@ void MatcherProcess::Work(const Job& job) try {
     WorkOnPartial(job.sweep_utime, job.scan);
   } else if (early_ && early_->utime == job.sweep_utime) {
     FinishSweep({});
+    growing_detector_->Forget();
   }
 } catch (const Stopped&) {
   // The process ends, or a whole scan came in: this one is left undone.
@@ -313,6 +314,7 @@ void MatcherProcess::WorkOnScan(const DescribedScan& scan) {
   if (!early_ || early_->utime != scan.utime) return;
   early_->T_local_sensor = scan.image.T_local_sensor();
   FinishSweep(result.detections);
+  growing_detector_->Forget();
 }
 
 void MatcherProcess::WorkAsShard(const DescribedScan& scan) {

@@ -193,7 +193,7 @@ Keys DefaultMethodKeys(PipelineParams* p) {
       {"ranking", "judged_most", &r.judged.most, ".. and up to this; >= judged_always"},
       {"ranking", "judged_min_score", &r.judged.min_score, ".. if their score is at least this; 0 .. 1"},
       {"ranking", "min_screened_score", &r.min_screened_score, "those that a first look finds less probable are not looked at closely; 0 .. 1"},
-      {"ranking", "min_coarse_pixels", &r.min_coarse_pixels, "that a model spans, from which every other row and column is compared before, which gives up what is ten times less probable still; >= 0"},
+      {"ranking", "min_coarse_pixels", &r.min_coarse_pixels, "that a model spans, from which every other row and column is compared before, which gives up what is ten times less probable still; 0 .. 1e6 (never)"},
       {"ranking", "same_distance", &r.same_distance, "m, poses nearer than this ..; > 0"},
       {"ranking", "same_angle_deg", DegreesOf{&r.same_angle}, ".. and turned by less are the same; > 0"},
 

@@ -17,7 +17,7 @@ static_assert(kHeaderBytes + kMaxRangeImageWidth * kBytesPerPixel <= kMaxMessage
               "a row fits into a message");
 
 constexpr double kFinestResolution = 1e-5;  // positions in coarser images are small numbers
-constexpr double kWidestTangent = 4.0;      // of a pinhole image's edge: a bit above 75 degrees'
+constexpr double kWidestTangent = 4.0;      // of a pinhole image's edges: a bit above 75 degrees'
 
 constexpr std::uint16_t kNeverObserved = 0;
 constexpr std::uint16_t kNoReturn = 65535;
@@ -68,6 +68,10 @@ std::string CheckExtent(const range_image_t& header) {
   if (!(std::abs(header.azimuth_left) <= 2.0 * kTurn && std::abs(header.elevation_top) <= kTurn)) {
     return "absurd image edges";
   }
+  const double right = header.azimuth_left - header.width * header.resolution;
+  const double bottom = header.elevation_top - header.height * header.resolution;
+  for (const double edge : {header.azimuth_left, right, header.elevation_top, bottom})
+    if (pinhole && std::abs(edge) > kWidestTangent) return "image is wider than a pinhole's";
   return "";
 }
 

@@ -44,7 +44,7 @@ struct JudgedScan {
   Eigen::Isometry3d T_local_sensor = Eigen::Isometry3d::Identity();
   int num_found = 0;                            // poses that were worth a score
   std::vector<CandidateModel> models;           // that were looked for; no two of one name
-  std::vector<ExplainingCandidate> candidates;  // those of one model in its order of ranking
+  std::vector<ExplainingCandidate> candidates;  // those of one model in an order of its own
 };
 
 // One list of what parts found in the same scan that each looked for some models. Of a model that

@@ -24,13 +24,14 @@ class Judge {
     JudgedCandidate result;
     result.candidate.model = ranked.model;
     result.rank_score = ranked.score;
+    result.origin = ranked.origin;
     result.figures = ranked.figures;
     const JudgedModel& model = database_.judged_models()[ranked.model];
     const RefinementParams& refinement = params_.refinement;
     const Eigen::Isometry3f first = RefinePose(
         scene_, model.coarse_sample(), ranked.T_sensor_object, refinement.BeforeScreening());
     const double min_score = params_.ranking.min_screened_score;
-    if (ranked.figures.pixels_across >= params_.ranking.min_coarse_pixels) {
+    if (min_score > 0.0 && ranked.figures.pixels_across >= params_.ranking.min_coarse_pixels) {
       constexpr double kFarBelow = 0.1;  // a quarter of the pixels is less sure
       JudgeAt(first, GatherCoarseEvidence, &result);
       if (result.candidate.score < kFarBelow * min_score) return result;
@@ -48,9 +49,7 @@ class Judge {
   }
 
  private:
-  // gather: GatherEvidence or GatherCoarseEvidence.
-  template <typename Gather>
-  void JudgeAt(const Eigen::Isometry3f& T_sensor_object, const Gather& gather,
+  void JudgeAt(const Eigen::Isometry3f& T_sensor_object, decltype(&GatherEvidence) gather,
                JudgedCandidate* result) const {
     Candidate& candidate = result->candidate;
     candidate.T_sensor_object = T_sensor_object.cast<double>();

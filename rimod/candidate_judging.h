@@ -20,7 +20,8 @@ namespace rimod {
 // Everything that judging a candidate found.
 struct JudgedCandidate {
   Candidate candidate;      // score: probability that it is right
-  double rank_score = 0.0;  // the hypothesis's
+  double rank_score = 0.0;  // the hypothesis's ..
+  int origin = -1;          // .. and so is this
   RankingFigures figures;
   FeatureSupport support;
   Evidence evidence;

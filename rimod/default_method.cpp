@@ -266,27 +266,21 @@ JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
   int num_found = 0;
   ModelMatches matches =
       MatchToModels(features, database, params, execution, before ? &before->known : nullptr);
-  const auto with_earlier = [&](std::vector<Hypothesis> fresh, auto member,
-                                const ModelQuota& quota) {
-    return before ? WithSettled(std::move(fresh), before->*member, change, database, quota) : fresh;
-  };
-  std::vector<Hypothesis> proposed = with_earlier(
+  SettledHypotheses settled(before, change, database);
+  const std::vector<Hypothesis> proposed = settled.Propose(
       ProposeHypotheses(scene, features, matches, database, params, execution, &num_found, change),
-      &EarlierLook::proposed, params.ranking.refined);
-  std::vector<Hypothesis> ranked =
-      with_earlier(RankHypotheses(scene, Unsettled(proposed), database, params, execution),
-                   &EarlierLook::ranked, params.ranking.judged);
-  JudgedScan found = ToJudgedScan(
-      scene,
-      JudgeCandidates(scene, features, matches, Unsettled(ranked), database, params, execution),
-      database, num_found);
-  if (before) AddSettled(before->judged, change, database, &found);
+      params.ranking.refined);
+  const std::vector<Hypothesis> ranked = settled.Rank(
+      RankHypotheses(scene, proposed, database, params, execution), params.ranking.judged);
+  const std::vector<JudgedCandidate> judged =
+      JudgeCandidates(scene, features, matches, ranked, database, params, execution);
+  JudgedScan found = ToJudgedScan(scene, judged, database, num_found);
+  std::vector<int> origins;
+  for (const JudgedCandidate& candidate : judged) origins.push_back(candidate.origin);
+  settled.Judge(origins, &found);
   if (earlier) {
-    earlier->emplace(EarlierLook{std::move(scene),
-                                 {features, std::move(matches)},
-                                 std::move(proposed),
-                                 std::move(ranked),
-                                 found});
+    earlier->emplace(
+        EarlierLook{std::move(scene), {features, std::move(matches)}, settled.TakeHistories()});
   }
   return found;
 }

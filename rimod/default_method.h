@@ -25,10 +25,10 @@ namespace rimod {
 // scan and that model.
 //
 // earlier: of the same sweep, database and parameters; is replaced by this look. What the images
-// have in common is taken from there: normals, correspondences, and the hypotheses and candidates
-// in whose surroundings nothing has changed, which take their part of the quotas. Only hypotheses
-// that something new belongs to are scored, refined and judged. The result is about what a look
-// without it finds, not the same.
+// have in common is taken from there: normals, correspondences, and the hypotheses in whose
+// surroundings nothing has changed, with what became of them; they take their part of the quotas.
+// Only hypotheses that something new belongs to are scored, refined and judged. The result is about
+// what a look without it finds, not the same.
 JudgedScan FindByEvidence(const RangeImage& image, const FeatureSet& features,
                           const ModelDatabase& database, const PipelineParams& params,
                           const Execution& execution,
@@ -44,8 +44,8 @@ ModelMatches MatchToModels(const FeatureSet& features, const ModelDatabase& data
 
 // A pose or two from every correspondence, scored as they are, without hopeless ones: of each model
 // the best of different poses, by the quota of refinement. Model after model, best first.
-// num_found: before any was left out. Without those in whose surroundings nothing has changed.
-// Stages hypotheses, scoring.
+// num_found: before any was left out. What has no news in the change is left out, too. Stages
+// hypotheses, scoring.
 std::vector<Hypothesis> ProposeHypotheses(const Scene& scene, const FeatureSet& features,
                                           const ModelMatches& matches,
                                           const ModelDatabase& database,

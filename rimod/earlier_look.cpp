@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <map>
 
 #include "rimod/model_work.h"
@@ -19,6 +18,26 @@ void AppendMatches(const std::vector<Correspondence>& list, int scene_feature, i
   });
   for (; match != list.end() && match->scene_feature == scene_feature; ++match)
     matches->push_back({as, match->model_feature, match->distance});
+}
+
+bool HasNews(const HypothesisHistory& history, const ImageChange& change,
+             const ModelDatabase& database) {
+  const ObjectModel& model = database.models()[history.proposed.model];
+  const auto news_at = [&](const Eigen::Isometry3f& T_sensor_object) {
+    return HasNews(change, model, T_sensor_object);
+  };
+  return news_at(history.proposed.T_sensor_object) ||
+         (history.ranked && news_at(history.ranked->T_sensor_object)) ||
+         (history.judged && news_at(history.judged->candidate.T_sensor_object.cast<float>()));
+}
+
+// Model after model, best first.
+std::vector<Hypothesis> InOrder(std::vector<Hypothesis> hypotheses) {
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) {
+                     return a.model != b.model ? a.model < b.model : a.score > b.score;
+                   });
+  return hypotheses;
 }
 
 }  // namespace
@@ -61,43 +80,68 @@ std::vector<Correspondence> WithKnown(const std::vector<Correspondence>& of_unkn
 
 bool HasNews(const ImageChange& change, const ObjectModel& model,
              const Eigen::Isometry3f& T_sensor_object) {
-  constexpr float kSurroundings = 0.15f;  // m, that refinement moves over and judging looks at
+  constexpr float kSurroundings = 0.15f;  // m, that judging looks at
   return change.TouchesBox(T_sensor_object, model.box_min.cast<float>().array() - kSurroundings,
                            model.box_max.cast<float>().array() + kSurroundings);
 }
 
-std::vector<Hypothesis> WithSettled(std::vector<Hypothesis> fresh,
-                                    const std::vector<Hypothesis>& earlier,
-                                    const ImageChange& change, const ModelDatabase& database,
-                                    const ModelQuota& quota) {
-  for (Hypothesis hypothesis : earlier) {
-    if (HasNews(change, database.models()[hypothesis.model], hypothesis.T_sensor_object)) continue;
-    hypothesis.settled = true;
-    fresh.push_back(hypothesis);
-  }
-  std::stable_sort(fresh.begin(), fresh.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return a.model != b.model ? a.model < b.model : a.score > b.score;
-  });
-  return BestOfEachModel(fresh, quota);
+SettledHypotheses::SettledHypotheses(const EarlierLook* before, const ImageChange& change,
+                                     const ModelDatabase& database)
+    : change_(change) {
+  if (!before || change.everything()) return;
+  for (const HypothesisHistory& history : before->histories)
+    if (!HasNews(history, change, database)) settled_before_.push_back(&history);
 }
 
-std::vector<Hypothesis> Unsettled(const std::vector<Hypothesis>& hypotheses) {
+std::vector<Hypothesis> SettledHypotheses::Propose(std::vector<Hypothesis> fresh,
+                                                   const ModelQuota& quota) {
+  for (Hypothesis& hypothesis : fresh) hypothesis.origin = -1;
+  for (std::size_t i = 0; i < settled_before_.size(); ++i) {
+    fresh.push_back(settled_before_[i]->proposed);
+    fresh.back().origin = static_cast<int>(i);
+  }
   std::vector<Hypothesis> unsettled;
-  std::copy_if(hypotheses.begin(), hypotheses.end(), std::back_inserter(unsettled),
-               [](const Hypothesis& hypothesis) { return !hypothesis.settled; });
+  for (Hypothesis& hypothesis : BestOfEachModel(InOrder(std::move(fresh)), quota)) {
+    const bool is_fresh = hypothesis.origin < 0;
+    history_before_.push_back(is_fresh ? nullptr : settled_before_[hypothesis.origin]);
+    hypothesis.origin = static_cast<int>(histories_.size());
+    histories_.push_back({hypothesis, {}, {}});
+    if (is_fresh) unsettled.push_back(hypothesis);
+  }
   return unsettled;
 }
 
-void AddSettled(const JudgedScan& before, const ImageChange& change, const ModelDatabase& database,
-                JudgedScan* found) {
-  if (change.everything()) return;
-  for (const ExplainingCandidate& known : before.candidates) {
-    const Candidate& candidate = known.candidate;
-    if (HasNews(change, database.models()[candidate.model],
-                candidate.T_sensor_object.cast<float>()))
-      continue;
-    found->candidates.push_back({candidate, known.rank_score, change.MovedRuns(known.explained)});
+std::vector<Hypothesis> SettledHypotheses::Rank(std::vector<Hypothesis> fresh,
+                                                const ModelQuota& quota) {
+  for (std::size_t i = 0; i < histories_.size(); ++i) {
+    const HypothesisHistory* const before = history_before_[i];
+    if (!before || !before->ranked) continue;
+    fresh.push_back(*before->ranked);
+    fresh.back().origin = static_cast<int>(i);
   }
+  std::vector<Hypothesis> unsettled;
+  for (const Hypothesis& hypothesis : BestOfEachModel(InOrder(std::move(fresh)), quota)) {
+    histories_[hypothesis.origin].ranked = hypothesis;
+    if (!history_before_[hypothesis.origin]) unsettled.push_back(hypothesis);
+  }
+  return unsettled;
+}
+
+void SettledHypotheses::Judge(const std::vector<int>& origins, JudgedScan* found) {
+  for (std::size_t i = 0; i < origins.size(); ++i)
+    histories_[origins[i]].judged = found->candidates[i];
+  for (std::size_t i = 0; i < histories_.size(); ++i) {
+    const HypothesisHistory* const before = history_before_[i];
+    if (!before || !before->judged || !histories_[i].ranked) continue;
+    ExplainingCandidate candidate = *before->judged;
+    candidate.explained = change_.MovedRuns(candidate.explained);
+    histories_[i].judged = candidate;
+    found->candidates.push_back(std::move(candidate));
+  }
+  std::stable_sort(found->candidates.begin(), found->candidates.end(),
+                   [](const ExplainingCandidate& a, const ExplainingCandidate& b) {
+                     return a.candidate.score > b.candidate.score;
+                   });
 }
 
 }  // namespace rimod

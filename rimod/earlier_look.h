@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "rimod/candidate_choice.h"
@@ -13,7 +15,7 @@
 namespace rimod {
 
 // What the default method's look at a sweep that still goes on leaves to the next one. Where the
-// surroundings of a pose have not changed it is settled: what was found out of it stays.
+// surroundings of a hypothesis have not changed it is settled: what was found out of it stays.
 
 // Correspondences of features that were matched before.
 struct KnownMatches {
@@ -21,12 +23,17 @@ struct KnownMatches {
   ModelMatches matches;
 };
 
+// What became of a hypothesis that was refined.
+struct HypothesisHistory {
+  Hypothesis proposed;
+  std::optional<Hypothesis> ranked;           // refined, when it was judged
+  std::optional<ExplainingCandidate> judged;  // then too
+};
+
 struct EarlierLook {
   Scene scene;
   KnownMatches known;
-  std::vector<Hypothesis> proposed;  // that were refined, model after model, best first
-  std::vector<Hypothesis> ranked;    // that were judged, likewise
-  JudgedScan judged;
+  std::vector<HypothesisHistory> histories;  // model after model, best proposed first
 };
 
 // For each feature the number of the known one that is the same, -1: none.
@@ -38,23 +45,36 @@ std::vector<Correspondence> WithKnown(const std::vector<Correspondence>& of_unkn
                                       const std::vector<Correspondence>& of_known,
                                       const std::vector<int>& known_as);
 
-// Whether anything is new that a model at a pose may have to do with: refinement moves it, judging
-// looks at what is around.
+// Whether anything is new in the pixels that a model at a pose may cover, or within 15 cm around
+// it.
 bool HasNews(const ImageChange& change, const ObjectModel& model,
              const Eigen::Isometry3f& T_sensor_object);
 
-// The best of both, as a quota lets through, model after model, best first; of the earlier ones
-// those that are settled.
-std::vector<Hypothesis> WithSettled(std::vector<Hypothesis> fresh,
-                                    const std::vector<Hypothesis>& earlier,
-                                    const ImageChange& change, const ModelDatabase& database,
-                                    const ModelQuota& quota);
+// Leads the hypotheses of a look through its stages together with those of the look before that are
+// settled: of which no pose, from the proposed to the judged one, has news. These take their part
+// of the quotas like the fresh ones, and are not worked on again.
+class SettledHypotheses {
+ public:
+  // before: null when there was none. All must outlive this.
+  SettledHypotheses(const EarlierLook* before, const ImageChange& change,
+                    const ModelDatabase& database);
 
-// Those that are to be worked on.
-std::vector<Hypothesis> Unsettled(const std::vector<Hypothesis>& hypotheses);
+  // Each: the fresh ones that the quota lets through beside the settled ones. The fresh ones come
+  // model after model, best first; ranked ones have the origin of the proposed ones.
+  std::vector<Hypothesis> Propose(std::vector<Hypothesis> fresh, const ModelQuota& quota);
+  std::vector<Hypothesis> Rank(std::vector<Hypothesis> fresh, const ModelQuota& quota);
+  // Adds the settled candidates to those that were found of the fresh ones, given with the origin
+  // of each; best first.
+  void Judge(const std::vector<int>& origins, JudgedScan* found);
 
-// Adds the earlier candidates that are settled.
-void AddSettled(const JudgedScan& before, const ImageChange& change, const ModelDatabase& database,
-                JudgedScan* found);
+  // For the next look, once all is judged.
+  std::vector<HypothesisHistory> TakeHistories() { return std::move(histories_); }
+
+ private:
+  std::vector<const HypothesisHistory*> settled_before_;
+  const ImageChange& change_;
+  std::vector<HypothesisHistory> histories_;              // of this look, by origin
+  std::vector<const HypothesisHistory*> history_before_;  // null: fresh; by origin
+};
 
 }  // namespace rimod

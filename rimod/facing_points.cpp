@@ -34,8 +34,8 @@ RIMOD_WIDE_LOOPS void ProjectSpherical(const PixelGrid& grid, float radius, Faci
 
 // Pixels from a coordinate of a disc's middle to the end of the ball around the disc: tan(a + b) -
 // tan(a), where tan(a) is the coordinate's size and sin(b) = radius / in_plane, the distance in the
-// plane of the coordinate and the axis.
-inline float PinholeReach(float coordinate, float in_plane_sq, float radius_sq, float per_unit) {
+// plane of the coordinate and the axis; what is nearer than 1.4 radii counts as that near.
+inline float DiscReach(float coordinate, float in_plane_sq, float radius_sq, float per_unit) {
   constexpr float kLeast = 0.25f;  // of what is nearer than a radius; keeps the reach finite
   const float rest_sq = in_plane_sq - radius_sq;
   const float tangent = std::sqrt(radius_sq / (rest_sq > radius_sq ? rest_sq : radius_sq));
@@ -70,8 +70,8 @@ RIMOD_WIDE_LOOPS void ProjectPinhole(const PixelGrid& grid, float radius, Facing
     rows[i] = held ? (top - upwards) * per_unit : kOutside;
     const float across_rows = range_sq - py[i] * py[i];
     const float across_columns = range_sq - pz[i] * pz[i];
-    reach_rows[i] = PinholeReach(upwards, across_rows, radius_sq, per_unit);
-    reach_columns[i] = PinholeReach(to_left, across_columns, radius_sq, per_unit);
+    reach_rows[i] = DiscReach(upwards, across_rows, radius_sq, per_unit);
+    reach_columns[i] = DiscReach(to_left, across_columns, radius_sq, per_unit);
   }
 }
 

@@ -48,9 +48,13 @@ FeatureSet GrowingExtractor::Look(Time sweep_begin, const RangeImage& image,
 
 DetectionResult GrowingDetector::Look(Time sweep_begin, const RangeImage& image,
                                       const FeatureSet& features, const Execution& execution) {
-  if (sweep_begin != sweep_begin_) before_.reset();
+  if (sweep_begin == sweep_begin_)
+    return DetectObjects(image, features, database_, params_, execution, &before_);
+  std::optional<EarlierLook> first;
+  DetectionResult result = DetectObjects(image, features, database_, params_, execution, &first);
+  before_ = std::move(first);
   sweep_begin_ = sweep_begin;
-  return DetectObjects(image, features, database_, params_, execution, &before_);
+  return result;
 }
 
 }  // namespace rimod

@@ -16,8 +16,9 @@
 namespace rimod {
 
 // Looks at sweeps that still go on, one after the other: each works on what the sweep has grown by
-// since the look before. Where the sensor's pose has changed since then everything is new, and so
-// it is in another sweep. A look that is broken off (an Execution may throw) leaves all as it was.
+// since the look before. Everything is new in another sweep, and where the sensor's pose, the
+// resolution or the axis of a pinhole image (the middle of what was seen) have changed since then.
+// A look that is broken off (an Execution may throw) leaves all as it was.
 
 // The features of growing scans: surroundings in which nothing has changed keep their description.
 class GrowingExtractor {
@@ -26,6 +27,8 @@ class GrowingExtractor {
 
   // Exactly what ExtractFeatures() gives. Its stages.
   FeatureSet Look(Time sweep_begin, const RangeImage& image, const Execution& execution);
+  // Gives the memory free that the last look's sweep takes.
+  void Forget() { before_.reset(); }
 
  private:
   struct Described {
@@ -49,6 +52,8 @@ class GrowingDetector {
   // About what DetectObjects() gives, see FindByEvidence(). Throws as that does.
   DetectionResult Look(Time sweep_begin, const RangeImage& image, const FeatureSet& features,
                        const Execution& execution);
+  // Gives the memory free that the last look's sweep takes.
+  void Forget() { before_.reset(); }
 
  private:
   const ModelDatabase& database_;

@@ -45,7 +45,7 @@ struct RankingParams {
   // Those that a first look finds less probable are not looked at closely; 0 .. 1
   double min_screened_score = 0.003;
   // .. after a look at every other row and column, where the model spans so many pixels, that gives
-  // up what is ten times less probable still; >= 0
+  // up what is ten times less probable still; 0 .. 1e6, which is never
   double min_coarse_pixels = 40.0;
   double same_distance = 0.05;  // m, poses nearer than this ..; > 0
   double same_angle = 0.26;     // rad, .. and turned by less are the same; > 0
@@ -97,7 +97,7 @@ struct Hypothesis {
   Eigen::Isometry3f T_sensor_object = Eigen::Isometry3f::Identity();
   double score = 0.0;
   RankingFigures figures;
-  bool settled = false;  // from an earlier look at a growing sweep, and there is nothing new to it
+  int origin = -1;  // its number among those that are refined; -1: none yet
 };
 
 // Compares poses with one scene, one after the other; of use to one thread.

@@ -36,11 +36,20 @@ bool IsSamePixel(const RangeImage& a, int row_a, int column_a, const RangeImage&
          first.offset_up == second.offset_up;
 }
 
+// m, of an about upright box from the sensor's vertical axis.
+float HorizontalDistance(const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& low,
+                         const Eigen::Vector3f& high) {
+  const Eigen::Vector3f sensor =
+      T_sensor_object.linear().transpose() * -T_sensor_object.translation();
+  const Eigen::Vector3f nearest = sensor.cwiseMax(low).cwiseMin(high);
+  return (nearest - sensor).head<2>().norm();
+}
+
 }  // namespace
 
 ImageChange::ImageChange(const RangeImage& before, const RangeImage& now)
     : grid_(now.grid()),
-      T_axis_sensor_(AxisFromSensor(grid_).cast<float>()),
+      R_axis_sensor_(AxisFromSensor(grid_).cast<float>()),
       width_before_(before.width()) {
   const PixelGrid& old = before.grid();
   const bool comparable = old.size() > 0 && grid_.size() > 0 && IsSamePlane(old, grid_) &&
@@ -89,7 +98,8 @@ bool ImageChange::Touches(const Eigen::Vector3f& centre, float radius) const {
   const double distance = p_sensor.norm();
   // Around the sensor, beside what the image can hold, or not a number.
   if (!(distance > radius) || !CanHold(grid_, p_sensor)) return true;
-  const double sine = radius / distance;
+  constexpr double kRounding = 1e-4;  // of the radius, more than that of points and floats
+  const double sine = std::min((1.0 + kRounding) * radius / distance, 1.0);
   const PixelPosition at = Project(grid_, p_sensor);
   PixelReach reach;
   bool all_around = false;
@@ -116,8 +126,9 @@ bool ImageChange::TouchesBox(const Eigen::Isometry3f& T_sensor_object, const Eig
                              const Eigen::Vector3f& high) const {
   if (everything_ || !T_sensor_object.matrix().allFinite()) return true;
   const bool pinhole = grid_.projection == Projection::kPinhole;
-  const Eigen::Isometry3f T_axis_object = T_axis_sensor_ * T_sensor_object;
+  const Eigen::Isometry3f T_axis_object = R_axis_sensor_ * T_sensor_object;
   float right = kFar, left = -kFar, bottom = kFar, top = -kFar;  // image coordinates
+  float lowest = kFar, highest = -kFar;                          // m
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3f p = T_axis_object * Eigen::Vector3f((corner & 1 ? high : low).x(),
                                                               (corner & 2 ? high : low).y(),
@@ -125,13 +136,21 @@ bool ImageChange::TouchesBox(const Eigen::Isometry3f& T_sensor_object, const Eig
     if (pinhole && !(p.x() > static_cast<float>(kMinPinholeCosine) * p.norm())) return true;
     const float to_left = pinhole ? p.y() / p.x() : FastAtan2(p.y(), p.x());
     const float upwards = pinhole ? p.z() / p.x() : FastAtan2(p.z(), p.head<2>().norm());
+    lowest = std::min(lowest, p.z());
+    highest = std::max(highest, p.z());
     right = std::min(right, to_left);
     left = std::max(left, to_left);
     bottom = std::min(bottom, upwards);
     top = std::max(top, upwards);
   }
-  // Half around and more: behind the sensor, where azimuths begin again, or about it.
-  if (!pinhole && left - right >= static_cast<float>(kPi)) return true;
+  if (!pinhole) {
+    // Half around and more: behind the sensor, where azimuths begin again, or about it.
+    if (left - right >= static_cast<float>(kPi)) return true;
+    // Sides are steepest where they are nearest, between the corners.
+    const float nearest = HorizontalDistance(T_sensor_object, low, high);
+    bottom = std::min(bottom, FastAtan2(lowest, nearest));
+    top = std::max(top, FastAtan2(highest, nearest));
+  }
   const PixelPosition first = PositionOf(grid_, {left, top});
   const PixelPosition last = PositionOf(grid_, {right, bottom});
   return CountChanged(static_cast<int>(std::floor(first.row)),

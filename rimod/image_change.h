@@ -17,9 +17,9 @@ class ImageChange {
   ImageChange(const RangeImage& before, const RangeImage& now);
 
   bool everything() const { return everything_; }
-  // False when no pixel has changed that a sphere (level sensor frame, m) may cover.
+  // False when no pixel has changed that a ball (level sensor frame, m) may cover.
   bool Touches(const Eigen::Vector3f& centre, float radius) const;
-  // The same of a box, low to high in the object frame: of the pixels between its corners.
+  // The same of a box, low to high in the object frame, that stands about upright.
   bool TouchesBox(const Eigen::Isometry3f& T_sensor_object, const Eigen::Vector3f& low,
                   const Eigen::Vector3f& high) const;
   // The same for the pixels [row - reach, row + reach] x [column - reach, column + reach] of the
@@ -37,7 +37,7 @@ class ImageChange {
 
   bool everything_ = true;
   PixelGrid grid_;  // of the new image
-  Eigen::Matrix3f T_axis_sensor_ = Eigen::Matrix3f::Identity();
+  Eigen::Matrix3f R_axis_sensor_ = Eigen::Matrix3f::Identity();
   int width_before_ = 0;
   int row_shift_ = 0, column_shift_ = 0;
   // How many pixels above and left of each have changed: (height + 1) x (width + 1).

@@ -85,8 +85,8 @@ Direction PixelDirection(const PixelGrid& grid, double row, double column);
 // The same as a unit vector.
 Eigen::Vector3d PixelBeam(const PixelGrid& grid, double row, double column);
 
-// rad, between the beams of neighbouring pixels: times range it is the spacing of the points on a
-// surface across the beams (spherical) or across the axis (pinhole).
+// Spacing of neighbouring pixels' points, over range (rad): on a surface across the beams
+// (spherical) or across the axis (pinhole).
 inline double PixelAngle(const PixelGrid& grid, int row, int column) {
   if (grid.projection == Projection::kSpherical) return grid.resolution;
   const ImageCoordinates at = CoordinatesAt(grid, row + 0.5, column + 0.5);

@@ -7,7 +7,21 @@
 // comparing).
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(RIMOD_FOUR_LANES)
+#define RIMOD_HAS_WIDE_LOOPS
 #define RIMOD_WIDE_LOOPS __attribute__((target_clones("avx2", "default")))
 #else
 #define RIMOD_WIDE_LOOPS
 #endif
+
+namespace rimod {
+
+// Which of the two this processor takes.
+inline bool LoopsHaveEightLanes() {
+#ifdef RIMOD_HAS_WIDE_LOOPS
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
+
+}  // namespace rimod

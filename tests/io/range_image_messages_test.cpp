@@ -216,6 +216,22 @@ TEST_F(BadRangeImageTest, WiderThanAPinholes) {
   });
   ExpectRejected("image is wider than a pinhole's");
 }
+TEST_F(BadRangeImageTest, APinholesEdgesFarOffItsAxis) {
+  for (double range_image_t::*edge :
+       {&range_image_t::azimuth_left, &range_image_t::elevation_top}) {
+    for (const double value : {5.0, -3.9}) {
+      bad_ = good_;
+      ChangeAll([&](range_image_t* s) {
+        s->projection = range_image_t::PINHOLE;
+        s->resolution = 0.001;
+        s->azimuth_left = s->elevation_top = 1.0;
+      });
+      EXPECT_TRUE(JoinRangeImageSections(bad_).image);
+      ChangeAll([&](range_image_t* s) { s->*edge = value; });
+      ExpectRejected("image is wider than a pinhole's");
+    }
+  }
+}
 TEST_F(BadRangeImageTest, SensorPoseNotFinite) {
   ChangeAll(
       [](range_image_t* s) { s->sensor_position[2] = std::numeric_limits<double>::quiet_NaN(); });

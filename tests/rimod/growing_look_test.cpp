@@ -195,8 +195,15 @@ TEST(GrowingDetectorTest, AnotherSweepOrAnotherSensorPoseBeginsAnew) {
   moved.T_local_sensor.translation().x() += 0.05;
   const RangeImage moved_image = MakeRangeImage(moved, Params().range_image);
   const FeatureSet moved_features = ExtractFeatures(moved_image, Params(), Execution{});
-  ExpectSame(detector.Look(Time(2'000'000), moved_image, moved_features, Execution{}),
-             DetectObjects(moved_image, moved_features, Database(), Params(), Execution{}));
+  const DetectionResult anew =
+      DetectObjects(moved_image, moved_features, Database(), Params(), Execution{});
+  ASSERT_FALSE(anew.detections.empty());
+  ExpectSame(detector.Look(Time(2'000'000), moved_image, moved_features, Execution{}), anew);
+
+  detector.Forget();
+  WorkCounter forgotten;
+  detector.Look(Time(2'000'000), moved_image, moved_features, forgotten.Watch());
+  EXPECT_GT(forgotten.work["validation"], 0u);
 }
 
 TEST(GrowingDetectorTest, ALookThatIsBrokenOffLeavesTheOneBefore) {
@@ -215,6 +222,7 @@ TEST(GrowingDetectorTest, ALookThatIsBrokenOffLeavesTheOneBefore) {
       if (name == stage) throw BrokenOff();
     };
     EXPECT_THROW(disturbed.Look(kSweep, second, second_features, execution), BrokenOff);
+    EXPECT_THROW(disturbed.Look(Time(2'000'000), first, first_features, execution), BrokenOff);
   }
   ExpectSame(disturbed.Look(kSweep, second, second_features, Execution{}),
              undisturbed.Look(kSweep, second, second_features, Execution{}));
@@ -222,11 +230,47 @@ TEST(GrowingDetectorTest, ALookThatIsBrokenOffLeavesTheOneBefore) {
 
 TEST(GrowingDetectorTest, ThreadsDoNotMatter) {
   GrowingDetector alone(Database(), Params()), many(Database(), Params());
+  std::size_t num_found = 0;
   for (const double elevation : kLooks) {
     const RangeImage image = ImageDownTo(elevation);
     const FeatureSet features = ExtractFeatures(image, Params(), Execution{});
-    ExpectSame(alone.Look(kSweep, image, features, Execution{}),
-               many.Look(kSweep, image, features, OnThreads(4)));
+    const DetectionResult found = alone.Look(kSweep, image, features, Execution{});
+    ExpectSame(found, many.Look(kSweep, image, features, OnThreads(4)));
+    num_found = found.detections.size();
+  }
+  EXPECT_GE(num_found, 2u);
+}
+
+// However many looks there are, no more is judged of a model than the quota says, and nothing that
+// explains pixels outside of the image.
+TEST(FindByEvidenceTest, CandidatesOfManyLooksKeepToTheQuota) {
+  std::optional<EarlierLook> earlier;
+  for (double elevation = -0.05; elevation > -0.6; elevation -= 0.02) {
+    const RangeImage image = ImageDownTo(elevation);
+    const FeatureSet features = ExtractFeatures(image, Params(), Execution{});
+    const JudgedScan found =
+        FindByEvidence(image, features, Database(), Params(), Execution{}, &earlier);
+    std::map<int, int> of_model;
+    for (std::size_t i = 0; i < found.candidates.size(); ++i) {
+      const ExplainingCandidate& candidate = found.candidates[i];
+      ++of_model[candidate.candidate.model];
+      if (i > 0) {
+        EXPECT_GE(found.candidates[i - 1].candidate.score, candidate.candidate.score);
+      }
+      for (const PixelRun& run : candidate.explained) {
+        EXPECT_GE(run.first, 0);
+        EXPECT_LE(run.first + run.count, image.grid().size());
+      }
+    }
+    for (const auto& [model, count] : of_model) EXPECT_LE(count, Params().ranking.judged.most);
+    std::size_t num_ranked = 0, num_judged = 0;
+    for (const HypothesisHistory& history : earlier->histories) {
+      num_ranked += history.ranked.has_value();
+      num_judged += history.judged.has_value();
+    }
+    EXPECT_EQ(num_ranked, num_judged);
+    EXPECT_EQ(num_judged, found.candidates.size());
+    EXPECT_LE(earlier->histories.size(), 2u * Params().ranking.refined.most);
   }
 }
 
@@ -252,30 +296,6 @@ TEST(MatchToModelsTest, KnownFeaturesKeepTheirCorrespondences) {
       EXPECT_EQ(mixed[m][i].distance, all[m][i].distance);
     }
   }
-}
-
-// Earlier hypotheses take their part of the quota and are not worked on again.
-TEST(WithSettledTest, TheBestOfBothGoOn) {
-  const RangeImage image = ImageDownTo(-0.55);
-  RangeImage changed = image;
-  changed.SetNoReturn(0, 0);  // far above both
-  const ImageChange change(image, changed);
-  std::vector<Hypothesis> fresh(3), earlier(3);
-  for (int i = 0; i < 3; ++i) {
-    fresh[i].model = earlier[i].model = 1;
-    fresh[i].score = 0.9 - 0.2 * i;    // 0.9 0.7 0.5
-    earlier[i].score = 0.8 - 0.2 * i;  // 0.8 0.6 0.4
-    earlier[i].T_sensor_object = kStool.cast<float>();
-  }
-  // Where something has changed, or it is not known where: not settled.
-  earlier[1].T_sensor_object.translation() = Eigen::Vector3f(NAN, 0.0f, 0.0f);
-  const std::vector<Hypothesis> both =
-      WithSettled(fresh, earlier, change, Database(), ModelQuota{2, 4, 0.45});
-  std::vector<double> scores;
-  for (const Hypothesis& h : both) scores.push_back(h.score);
-  EXPECT_EQ(scores, (std::vector<double>{0.9, 0.8, 0.7, 0.5}));
-  EXPECT_TRUE(both[1].settled);
-  EXPECT_EQ(Unsettled(both).size(), 3u);
 }
 
 }  // namespace

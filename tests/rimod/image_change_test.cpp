@@ -165,8 +165,7 @@ TEST(ImageChangeTest, SpheresSeeWhatTheyMayCover) {
     const Eigen::Vector3d centre = distance * UnitVector(middle);
     const double apart = std::acos(std::clamp(beam.dot(centre) / distance, -1.0, 1.0));
     const double angle = std::asin(radius / distance);
-    const bool touched =
-        change.Touches(centre.cast<float>(), static_cast<float>(radius * (1.0 + 1e-5)));
+    const bool touched = change.Touches(centre.cast<float>(), static_cast<float>(radius));
     if (apart <= angle) {
       EXPECT_TRUE(touched) << "elevation " << middle.elevation << " azimuth " << middle.azimuth;
       ++num_touched;
@@ -207,8 +206,7 @@ TEST(ImageChangeTest, SpheresInPinholeImagesSeeWhatTheyMayCover) {
         distance * PixelBeam(grid, random.Real(0, 100), random.Real(0, 100));
     const double apart = std::acos(std::clamp(beam.dot(centre) / distance, -1.0, 1.0));
     const double angle = std::asin(radius / distance);
-    const bool touched =
-        change.Touches(centre.cast<float>(), static_cast<float>(radius * (1.0 + 1e-5)));
+    const bool touched = change.Touches(centre.cast<float>(), static_cast<float>(radius));
     if (apart <= angle) {
       EXPECT_TRUE(touched);
       ++num_touched;
@@ -229,48 +227,54 @@ TEST(ImageChangeTest, SpheresInPinholeImagesSeeWhatTheyMayCover) {
   EXPECT_TRUE(change.TouchesBox(Eigen::Isometry3f::Identity(), {2, 1, 1}, {3, 3, 3}));
 }
 
-TEST(ImageChangeTest, BoxesSeeThePixelsBetweenTheirCorners) {
+// Also where a side is nearer than the corners, and so steeper.
+TEST(ImageChangeTest, BoxesSeeThePixelsOfTheirPoints) {
   RandomImages random(5);
-  const RangeImage before = Empty(Grid(60, 120, 120, 240));
-  int num_touched = 0, num_apart = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const Eigen::Isometry3d pose = Placed(random.Real(1.5, 5.0), random.Real(-3.0, 3.0),
-                                          random.Real(-1.5, 1.0), random.Real(-3.0, 3.0));
-    const Eigen::Vector3d low(-0.3, -0.5, 0.0), high(0.3, 0.5, random.Real(0.1, 1.0));
-    double top = 1e9, bottom = -1e9, left = 1e9, right = -1e9;
-    for (const double x : {low.x(), high.x()}) {
-      for (const double y : {low.y(), high.y()}) {
-        for (const double z : {low.z(), high.z()}) {
-          const PixelPosition p = Project(before.grid(), pose * Eigen::Vector3d(x, y, z));
-          top = std::min(top, p.row);
-          bottom = std::max(bottom, p.row);
-          left = std::min(left, p.column);
-          right = std::max(right, p.column);
-        }
-      }
+  int num_apart = 0;
+  for (int i = 0; i < 800; ++i) {
+    PixelGrid grid = Grid(60, 150, 150, 300);
+    if (i % 3 == 0) {
+      grid.projection = Projection::kPinhole;
+      grid.axis.elevation = -0.6;
     }
-    const int row = static_cast<int>(random.Real(top - 5, bottom + 5));
-    const int column = static_cast<int>(random.Real(left - 5, right + 5));
-    if (!before.grid().Contains(row, column)) continue;
+    const RangeImage before = Empty(grid);
+    const Eigen::Isometry3d pose = Placed(random.Real(1.0, 5.0), random.Real(-2.0, 2.0),
+                                          random.Real(-1.5, 1.0), random.Real(-3.0, 3.0));
+    const Eigen::Vector3d low(-0.3, -0.8, 0.0), high(0.3, 0.8, random.Real(0.1, 1.0));
+    Eigen::Vector3d p_object(random.Real(-0.3, 0.3), random.Real(-0.8, 0.8),
+                             random.Real(0.0, high.z()));
+    if (i % 2 == 0) p_object.z() = random.Int(0, 1) * high.z();  // on top or below
+    if (i % 4 < 2) p_object.x() = random.Int(0, 1) == 0 ? low.x() : high.x();
+    const PixelPosition at = Project(grid, pose * p_object);
+    const int row = static_cast<int>(std::floor(at.row));
+    const int column = static_cast<int>(std::floor(at.column));
+    if (!grid.Contains(row, column)) continue;
     RangeImage now = before;
     now.SetNoReturn(row, column);
-    const ImageChange change(before, now);
-    const bool touched =
-        change.TouchesBox(pose.cast<float>(), low.cast<float>(), high.cast<float>());
-    constexpr double kRounding = 0.01;  // pixels
-    if (row + 1 > top + kRounding && row < bottom - kRounding && column + 1 > left + kRounding &&
-        column < right - kRounding) {
-      EXPECT_TRUE(touched);
-      ++num_touched;
-    }
-    if (row + 1 < top - kRounding || row > bottom + kRounding || column + 1 < left - kRounding ||
-        column > right + kRounding) {
-      EXPECT_FALSE(touched);
-      ++num_apart;
-    }
+    const auto touches = [&](const RangeImage& image) {
+      return ImageChange(before, image)
+          .TouchesBox(pose.cast<float>(), low.cast<float>(), high.cast<float>());
+    };
+    EXPECT_TRUE(touches(now)) << "row " << at.row << " column " << at.column;
+    RangeImage elsewhere = before;
+    elsewhere.SetNoReturn(random.Int(0, 149), random.Int(0, 299));
+    num_apart += !touches(elsewhere);
   }
-  EXPECT_GT(num_touched, 100);
-  EXPECT_GT(num_apart, 100);
+  EXPECT_GT(num_apart, 300);
+}
+
+// The middle of a near side's lower edge is seen steeper than its ends.
+TEST(ImageChangeTest, BoxesSeeThePixelsBelowTheirCorners) {
+  const RangeImage before = Empty(Grid(60, 150, 150, 300));
+  for (const double z : {-1.1, 0.4}) {  // m, of the bottom: below the sensor, and the top above it
+    const Eigen::Isometry3d pose = Placed(1.45, 0.0, z, 0.0);
+    const Eigen::Vector3d edge(-0.3, 0.0, z < 0.0 ? 0.0 : 0.7);
+    const PixelPosition at = Project(before.grid(), pose * edge);
+    RangeImage now = before;
+    now.SetNoReturn(static_cast<int>(at.row), static_cast<int>(at.column));
+    EXPECT_TRUE(ImageChange(before, now)
+                    .TouchesBox(pose.cast<float>(), {-0.3f, -0.8f, 0.0f}, {0.3f, 0.8f, 0.7f}));
+  }
 }
 
 TEST(ImageChangeTest, BoxesAboutOrBehindTheSensorSeeEverything) {
