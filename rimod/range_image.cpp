@@ -12,7 +12,6 @@ namespace rimod {
 namespace {
 
 constexpr int kMaxPixels = 16'000'000;
-constexpr double kPi = 3.14159265358979323846;
 
 void CheckGrid(const PixelGrid& grid) {
   const bool sane_size = grid.width >= 0 && grid.height >= 0 &&
