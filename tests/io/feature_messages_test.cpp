@@ -7,6 +7,7 @@
 
 #include "io/message_codec.h"
 #include "tests/io/random_values.h"
+#include "tests/support/same_features.h"
 
 namespace rimod {
 namespace {
@@ -19,17 +20,6 @@ std::vector<feature_set_t> ThroughBytes(const std::vector<feature_set_t>& sectio
     received.push_back(DecodeMessage<feature_set_t>(bytes.data(), bytes.size()).message.value());
   }
   return received;
-}
-
-void ExpectEqual(const FeatureSet& a, const FeatureSet& b) {
-  EXPECT_EQ(a.descriptor_kind, b.descriptor_kind);
-  EXPECT_EQ(a.descriptor_size, b.descriptor_size);
-  ASSERT_EQ(a.features.size(), b.features.size());
-  for (std::size_t i = 0; i < a.features.size(); ++i) {
-    EXPECT_EQ(a.features[i].position, b.features[i].position);
-    EXPECT_EQ(a.features[i].normal, b.features[i].normal);
-    EXPECT_EQ(a.features[i].descriptor, b.features[i].descriptor);
-  }
 }
 
 TEST(FeatureMessagesTest, SetsOfAnySizeComeBackBitForBit) {
